@@ -18,11 +18,11 @@ template <class Node, class Parameter, bool holds>
 struct WrongType {
   static_assert(holds,
                 "a node's parameter is const T&, T&, const Previous<T>&, const Latest<T>&, "
-                "const Parts<T, N>&, or under Split also Slice");
+                "const Parts<T, N>&, or under Split also Partition");
 };
 template <class Node, bool holds>
-struct SliceOutsideSplit {
-  static_assert(holds, "only a node under Split takes a Slice");
+struct PartitionOutsideSplit {
+  static_assert(holds, "only a node under Split takes a Partition");
 };
 template <class Token, class Reader, bool holds>
 struct NoWriter {
@@ -69,18 +69,18 @@ consteval void check_parameter() {
   using Token = TokenOf<Listed, Parameter>;
   constexpr PortKind kind = Port<Parameter>::kind;
   (void)sizeof(WrongType<Node, Parameter, kind != PortKind::wrong>);
-  if constexpr (kind == PortKind::slice) {
-    (void)sizeof(SliceOutsideSplit<Node, Unit<Listed>::split>);
+  if constexpr (kind == PortKind::partition) {
+    (void)sizeof(PartitionOutsideSplit<Node, Unit<Listed>::split>);
   }
   if constexpr (kind == PortKind::read || kind == PortKind::previous) {
     constexpr bool written = Wires::template count_of<Token>(PortKind::write) > 0;
-    constexpr bool handed_in = Wires::template is_input<Token>;
+    constexpr bool is_graph_input = Wires::template is_input<Token>;
     constexpr bool other =
         !written && written_with_other_count<Wires, Token>(typename Wires::Tokens{});
     (void)sizeof(WrongPartsCount<Token, Node, !other>);
-    constexpr bool found = written || handed_in || other;
+    constexpr bool found = written || is_graph_input || other;
     (void)sizeof(NoWriter<Token, Node, found>);
-    constexpr bool remembers_input = kind == PortKind::previous && handed_in;
+    constexpr bool remembers_input = kind == PortKind::previous && is_graph_input;
     (void)sizeof(PreviousOfInput<Token, !remembers_input>);
   }
 }

@@ -134,7 +134,7 @@ struct Description {
       fnv.add(names[unit]);
       fnv.add(static_cast<unsigned>(Wires::copies[unit]));
       for (const PortRow& port : Wires::ports) {
-        if (port.unit != unit || port.kind == PortKind::slice) continue;
+        if (port.unit != unit || port.kind == PortKind::partition) continue;
         fnv.add(static_cast<unsigned>(port.kind));
         fnv.add(static_cast<unsigned>(tokens[port.token].kind));
         fnv.add(static_cast<unsigned>(tokens[port.token].count));

@@ -219,8 +219,8 @@ class Graph {
   [[nodiscard]] decltype(auto) argument() noexcept {
     using Token = TokenOf<Listed, Parameter>;
     constexpr PortKind kind = Port<Parameter>::kind;
-    if constexpr (kind == PortKind::slice) {
-      return Slice{copy, Unit<Listed>::count};
+    if constexpr (kind == PortKind::partition) {
+      return Partition{copy, Unit<Listed>::count};
     } else if constexpr (kind == PortKind::previous) {
       return Previous<Token>(std::as_const(tokens_.template slot<Token>().before()));
     } else if constexpr (kind == PortKind::write && Unit<Listed>::split) {

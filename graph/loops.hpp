@@ -11,7 +11,8 @@
 //     [[nodiscard]] LoopCounts counts() const noexcept;  // of the last activation
 //   };
 //
-// A node under Split whose copies differ may add worst(limits, slice); worst(limits) covers all.
+// A node under Split whose copies differ may add worst(limits, partition); worst(limits) covers
+// all.
 #pragma once
 
 #include <array>

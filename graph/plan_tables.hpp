@@ -18,7 +18,7 @@ using NodeSet = std::uint64_t;
 
 // Predecessors of each node: the nodes whose data it reads in the same activation.
 template <class G>
-inline constexpr auto needs = [] {
+inline constexpr auto predecessors = [] {
   using Wires = typename G::Wires;
   static_assert(Wires::node_count <= 64, "a set of nodes is one word");
   std::array<NodeSet, static_cast<std::size_t>(Wires::node_count)> sets{};
@@ -35,7 +35,7 @@ inline constexpr auto needs = [] {
 }();
 
 template <class G>
-struct PlanTables {
+struct ScheduleTables {
   static constexpr auto k_nodes = static_cast<std::size_t>(G::node_count);
   int workers = 1;
   std::array<std::uint8_t, k_nodes> worker{};  // of each node
@@ -78,7 +78,7 @@ struct PlanFault {
 // Checks the tables: each node runs once, and the workers' orders together provide each node's
 // data. Simulates the schedule without the nodes. Returns the first fault.
 template <class G>
-[[nodiscard]] constexpr PlanFault plan_fault(const PlanTables<G>& tables) noexcept {
+[[nodiscard]] constexpr PlanFault schedule_fault(const ScheduleTables<G>& tables) noexcept {
   if (tables.workers < 1 || tables.workers > k_plan_workers_max) return {PlanError::workers, -1};
   NodeSet listed = 0;
   for (int w = 0; w < tables.workers; ++w) {
@@ -103,7 +103,7 @@ template <class G>
     for (std::size_t w = 0; w < static_cast<std::size_t>(tables.workers); ++w) {
       if (at[w] == tables.count[w]) continue;
       const int node = tables.order[w][at[w]];
-      if ((needs<G>[static_cast<std::size_t>(node)] & ~run) != 0) continue;
+      if ((predecessors<G>[static_cast<std::size_t>(node)] & ~run) != 0) continue;
       run |= NodeSet{1} << node;
       ++at[w];
       moved = true;
@@ -119,8 +119,8 @@ template <class G>
 // Default schedule, without computed bounds: copy i of a split on worker i modulo the workers,
 // every other node on worker 0, in the graph's order; as graph/workers.hpp between its barriers.
 template <class G>
-[[nodiscard]] constexpr PlanTables<G> plan_by_rule(int workers) noexcept {
-  PlanTables<G> tables;
+[[nodiscard]] constexpr ScheduleTables<G> default_schedule(int workers) noexcept {
+  ScheduleTables<G> tables;
   tables.workers = std::clamp(workers, 1, k_plan_workers_max);
   for (const int unit : G::Wires::order.units) {
     for (int copy = 0; copy < G::Wires::copies[unit]; ++copy) {

@@ -6,7 +6,8 @@
 // their data. The output has the bytes of Serial. Worst input: a delayed node. Its reader keeps
 // waiting (rest.hpp), as no other node writes the data, and counts one overrun. Meanwhile worker 0
 // queries the boundary, so that a watched activation ends at its deadline without delay of the
-// output. settle() waits for a worker that is still inside a node, after the output is published.
+// output. finish_activation() waits for a worker that is still inside a node, after the output is
+// published.
 #pragma once
 
 #include <array>
@@ -21,21 +22,22 @@
 
 namespace glint::graph {
 
-template <class G, Rest R>
+template <class G, WaitPolicy R>
 class Planned {
  public:
-  // Requires tables without a fault by plan_fault(). `rest` must outlive this object.
-  Planned(const PlanTables<G>& tables, R& rest) noexcept : tables_(tables), rest_(&rest) {
+  // Requires tables without a fault by schedule_fault(). `rest` must outlive this object.
+  Planned(const ScheduleTables<G>& tables, R& rest) noexcept : tables_(tables), rest_(&rest) {
     for (int node = 0; node < G::node_count; ++node) {
       const auto i = static_cast<std::size_t>(node);
-      foreign_[i] = needs<G>[i] & ~tables_.nodes_of(tables_.worker[i]);
-      awaited_ |= foreign_[i];
+      remote_predecessors_[i] = predecessors<G>[i] & ~tables_.nodes_of(tables_.worker[i]);
+      awaited_ |= remote_predecessors_[i];
     }
   }
 
   [[nodiscard]] int workers() const noexcept { return tables_.workers; }
 
-  // Call on worker 0, after settle() and before it releases the others for an activation.
+  // Call on worker 0, after finish_activation() and before it releases the others for an
+  // activation.
   void begin(G& graph) noexcept {
     graph.begin_activation();
     ++activation_;
@@ -43,7 +45,7 @@ class Planned {
 
   // Call on workers 1 and above, each once per activation.
   template <Trace T>
-  void help(G& graph, int worker, T& trace) noexcept {
+  void run_worker(G& graph, int worker, T& trace) noexcept {
     const auto w = static_cast<std::size_t>(worker);
     for (int step = 0; step < tables_.count[w]; ++step) {
       const int node = tables_.order[w][static_cast<std::size_t>(step)];
@@ -59,7 +61,7 @@ class Planned {
   // Nodes beyond a gap may have run on other workers. Therefore no node with state may follow a
   // split, or a replay would differ.
   template <Trace T, Boundary B>
-  [[nodiscard]] int lead(G& graph, T& trace, B& boundary) noexcept {
+  [[nodiscard]] int run_leader(G& graph, T& trace, B& boundary) noexcept {
     int last = -1;
     const auto goes_on = [&] { return last < 0 || boundary.go_on(last); };
     const int count = tables_.count[0];
@@ -78,10 +80,10 @@ class Planned {
     return G::node_count - 1;
   }
 
-  // Call on worker 0 once after each lead(). Waits until no other worker is inside the graph, then
-  // undoes the feedback of an abandoned activation. The wait is bounded by the longest node in
+  // Call on worker 0 once after each run_leader(). Waits until no other worker is inside the graph,
+  // then undoes the feedback of an abandoned activation. The wait is bounded by the longest node in
   // progress; the activation's output is already published.
-  void settle(G& graph) noexcept {
+  void finish_activation(G& graph) noexcept {
     for (int worker = 1; worker < tables_.workers; ++worker) {
       const Mark& mark = finished_[static_cast<std::size_t>(worker)];
       (void)wait(
@@ -126,16 +128,16 @@ class Planned {
   template <class GoesOn>
   [[nodiscard]] bool await(int node, int worker, const GoesOn& goes_on) noexcept {
     if (worker != 0 && is_now(abandoned_)) return false;
-    const NodeSet foreign = foreign_[static_cast<std::size_t>(node)];
+    const NodeSet remote = remote_predecessors_[static_cast<std::size_t>(node)];
     for (int other = 0; other < G::node_count; ++other) {
-      if ((foreign >> other & 1u) == 0) continue;
+      if ((remote >> other & 1u) == 0) continue;
       if (!wait(worker, goes_on, [&] { return has_run(other); })) return false;
     }
     return true;
   }
-  template <class GoesOn, class There>
-  [[nodiscard]] bool wait(int worker, const GoesOn& goes_on, const There& there) noexcept {
-    return wait_for(*rest_, overruns_[static_cast<std::size_t>(worker)].at, there,
+  template <class GoesOn, class IsDone>
+  [[nodiscard]] bool wait(int worker, const GoesOn& goes_on, const IsDone& is_done) noexcept {
+    return wait_for(*rest_, overruns_[static_cast<std::size_t>(worker)].at, is_done,
                     [&] { return !(worker != 0 && is_now(abandoned_)) && goes_on(); });
   }
 
@@ -148,8 +150,8 @@ class Planned {
     return last;
   }
 
-  PlanTables<G> tables_;
-  std::array<NodeSet, static_cast<std::size_t>(G::node_count)> foreign_{};
+  ScheduleTables<G> tables_;
+  std::array<NodeSet, static_cast<std::size_t>(G::node_count)> remote_predecessors_{};
   NodeSet awaited_ = 0;           // nodes that another worker waits for
   std::uint64_t activation_ = 0;  // from 1; written by worker 0 before it releases the others
   std::array<Mark, static_cast<std::size_t>(G::node_count)> done_{};

@@ -6,7 +6,7 @@
 //   const Previous<T>&  the last activation's token (T{} before the first)
 //   const Latest<T>&    the newest version from another rate group (graph/latest.hpp)
 //   const Parts<T, N>&  the output of the N copies of a Split, in index order
-//   Slice               index of this copy and number of copies; only under Split
+//   Partition               index of this copy and number of copies; only under Split
 #pragma once
 
 #include <cassert>
@@ -37,7 +37,7 @@ class Previous {
 };
 
 // Partition of the data that a copy processes: index of count, 0 <= index < count.
-struct Slice {
+struct Partition {
   int index = 0;
   int count = 1;
 };

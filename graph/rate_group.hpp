@@ -13,13 +13,13 @@ namespace glint::graph {
 inline constexpr int k_latest_max = 8;  // Latest<> inputs of one graph
 
 // Inputs of a group at one release. The versions are in the order of Inputs<>.
-struct Choice {
+struct ReleaseInputs {
   std::uint32_t group = 0;
   std::uint64_t activation = 0;  // counts from 1
   std::int64_t nominal_ns = 0;   // the planned release time, not the actual one
   int version_count = 0;
   std::array<std::uint64_t, k_latest_max> versions{};
-  bool operator==(const Choice&) const = default;
+  bool operator==(const ReleaseInputs&) const = default;
 };
 
 namespace detail {
@@ -35,7 +35,7 @@ class RateGroup {
   RateGroup(G& graph, std::uint32_t group) noexcept : graph_(&graph) { choice_.group = group; }
 
   // Live: samples the newest version of every Latest<> input. activate() runs the nodes.
-  const Choice& release(std::int64_t nominal_ns) noexcept {
+  const ReleaseInputs& release(std::int64_t nominal_ns) noexcept {
     graph_->sample();
     begin(choice_.activation + 1, nominal_ns);
     return choice_;
@@ -43,7 +43,7 @@ class RateGroup {
 
   // Replay: samples only inputs that do not have the recorded version yet. Returns false if a
   // version then differs: the replay has not published that version, or has published a newer one.
-  [[nodiscard]] bool release_as(const Choice& recorded) noexcept {
+  [[nodiscard]] bool release_as(const ReleaseInputs& recorded) noexcept {
     int i = 0;
     each_latest([&](auto& latest) {
       if (i < recorded.version_count && latest.version() != recorded.versions[i]) latest.sample();
@@ -59,7 +59,7 @@ class RateGroup {
     graph_->activate(how...);
   }
 
-  [[nodiscard]] const Choice& choice() const noexcept { return choice_; }
+  [[nodiscard]] const ReleaseInputs& choice() const noexcept { return choice_; }
   [[nodiscard]] G& graph() noexcept { return *graph_; }
 
  private:
@@ -91,7 +91,7 @@ class RateGroup {
   void visit(F& /*f*/, T* /*kind*/) noexcept {}
 
   G* graph_;
-  Choice choice_;
+  ReleaseInputs choice_;
 };
 
 }  // namespace glint::graph

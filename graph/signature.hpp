@@ -9,9 +9,9 @@
 
 namespace glint::graph {
 
-enum class PortKind { read, write, previous, slice, wrong };
+enum class PortKind { read, write, previous, partition, wrong };
 
-// Kind and token of one parameter of a call operator. Kind `wrong`: by value (except Slice), by
+// Kind and token of one parameter of a call operator. Kind `wrong`: by value (except Partition), by
 // pointer, by rvalue reference, or a read-only graph type by T&.
 template <class Parameter>
 struct Port {
@@ -35,9 +35,9 @@ struct Port<const Previous<T>&> {
   using Token = T;
 };
 template <>
-struct Port<Slice> {
-  static constexpr PortKind kind = PortKind::slice;
-  using Token = Slice;
+struct Port<Partition> {
+  static constexpr PortKind kind = PortKind::partition;
+  using Token = Partition;
 };
 template <class T>
 struct Port<Previous<T>&> : Port<Previous<T>> {};
@@ -46,12 +46,12 @@ struct Port<Latest<T>&> : Port<Latest<T>> {};
 template <class T, int N>
 struct Port<Parts<T, N>&> : Port<Parts<T, N>> {};
 template <>
-struct Port<Slice&> {
+struct Port<Partition&> {
   static constexpr PortKind kind = PortKind::wrong;
-  using Token = Slice;
+  using Token = Partition;
 };
 template <>
-struct Port<const Slice&> : Port<Slice&> {};
+struct Port<const Partition&> : Port<Partition&> {};
 
 namespace detail {
 

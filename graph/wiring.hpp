@@ -63,8 +63,8 @@ template <int n, std::size_t ports_size, std::size_t tokens_size>
     for (int step = 0; step < n; ++step) unit = writer[waits_for(unit)];
     order.cycle_unit = unit;
     order.cycle_token = waits_for(unit);
-    for (int rest = 0, at = order.placed; rest < n; ++rest) {
-      if (!done[rest]) order.units[at++] = rest;
+    for (int remaining = 0, at = order.placed; remaining < n; ++remaining) {
+      if (!done[remaining]) order.units[at++] = remaining;
     }
   }
   return order;

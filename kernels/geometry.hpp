@@ -40,7 +40,7 @@ struct Pose {
 
 // Smallest rotation that maps the direction `from` to `to`; for opposite directions, about any
 // perpendicular axis. Replaces Eigen's FromTwoVectors, whose decomposition is slow to compile.
-[[nodiscard]] inline Quaternion turn_between(const Vector3& from, const Vector3& to) {
+[[nodiscard]] inline Quaternion rotation_between(const Vector3& from, const Vector3& to) {
   const Vector3 a = from.normalized(), b = to.normalized();
   const double w = 1 + a.dot(b);
   const Vector3 across = a.unitOrthogonal();

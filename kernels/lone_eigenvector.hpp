@@ -25,7 +25,7 @@ struct SymmetricMatrix {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
-struct LoneVector {
+struct IsolatedEigenvector {
   Vector3 v = Vector3::UnitZ();
   bool largest = false;  // its eigenvalue is the largest; else it is the smallest
 };
@@ -34,12 +34,12 @@ namespace detail {
 
 // Relative limit of the eigenvalues' squared spread. Below it the eigenvalues are equal up to
 // rounding and every axis is valid.
-inline constexpr double k_all_equal = 1e-30;
+inline constexpr double k_spread_relative_min = 1e-30;
 
 // Isolated eigenvalue of a matrix with trace 0 and squared elements that sum to 6, from half its
 // determinant h: 2 cos(acos(|h|) / 3) with the sign of h. It is the only root of x^3 - 3 x = 2 |h|
 // beyond x = 1; it is between sqrt(3) and 2, where the slope is 6 to 9.
-inline double lone_eigenvalue(double h) {
+inline double isolated_eigenvalue(double h) {
   const double a = std::min(std::abs(h), 1.0);
   // Cubic interpolant at Chebyshev nodes, error below 1e-4; each Newton step nearly squares it.
   double x = 1.73213266 + a * (0.3306607 + a * (-0.0813824 + a * 0.01863937));
@@ -55,19 +55,19 @@ inline const Vector3& longer(const Vector3& a, double a_square, const Vector3& b
 
 }  // namespace detail
 
-[[nodiscard]] inline LoneVector lone_eigenvector(const SymmetricMatrix& m) {
+[[nodiscard]] inline IsolatedEigenvector isolated_eigenvector(const SymmetricMatrix& m) {
   const double mean = (m.xx + m.yy + m.zz) / 3;
   const double dx = m.xx - mean, dy = m.yy - mean, dz = m.zz - mean;
   const double square =
       (dx * dx + dy * dy + dz * dz + 2 * (m.xy * m.xy + m.xz * m.xz + m.yz * m.yz)) / 6;
-  LoneVector out;
-  if (!(square > detail::k_all_equal * mean * mean)) return out;
+  IsolatedEigenvector out;
+  if (!(square > detail::k_spread_relative_min * mean * mean)) return out;
   const double inverse = 1 / std::sqrt(square);
   const double bx = dx * inverse, by = dy * inverse, bz = dz * inverse;
   const double sxy = m.xy * inverse, sxz = m.xz * inverse, syz = m.yz * inverse;
   const double half = 0.5 * (bx * (by * bz - syz * syz) - sxy * (sxy * bz - syz * sxz) +
                              sxz * (sxy * syz - by * sxz));
-  const double value = detail::lone_eigenvalue(half);
+  const double value = detail::isolated_eigenvalue(half);
   out.largest = half >= 0;
   // A - lambda I has rank two; its rows are perpendicular to the eigenvector.
   const Vector3 r0(bx - value, sxy, sxz), r1(sxy, by - value, syz), r2(sxz, syz, bz - value);
@@ -80,10 +80,10 @@ inline const Vector3& longer(const Vector3& a, double a_square, const Vector3& b
 
 // Two unit vectors perpendicular to a unit vector n and to each other (orthonormal basis).
 // Source: Duff et al. 2017, Journal of Computer Graphics Techniques 6(1).
-struct DirectionsAcross {
+struct OrthonormalBasis {
   Vector3 p, q;
 };
-[[nodiscard]] inline DirectionsAcross directions_across(const Vector3& n) {
+[[nodiscard]] inline OrthonormalBasis orthonormal_basis(const Vector3& n) {
   const double sign = n.z() < 0 ? -1.0 : 1.0;
   const double a = -1 / (sign + n.z());
   const double b = n.x() * n.y() * a;

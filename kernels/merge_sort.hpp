@@ -31,11 +31,11 @@ void sort_four(T* values) noexcept {
   values[0] = a, values[1] = b, values[2] = c, values[3] = d;
 }
 
-// Sorts the first `count` values; `spare` is scratch.
+// Sorts the first `count` values; overwrites `scratch`.
 template <class T, std::size_t N>
-void merge_sort(std::array<T, N>& values, std::array<T, N>& spare, int count) noexcept {
+void merge_sort(std::array<T, N>& values, std::array<T, N>& scratch, int count) noexcept {
   T* from = values.data();
-  T* to = spare.data();
+  T* to = scratch.data();
   const int fours = count >= 8 ? count / 4 * 4 : 0;
   for (int begin = 0; begin < fours; begin += 4) sort_four(from + begin);
   // Insertion sort: the remainder after the groups of four, or the whole array if count < 8.

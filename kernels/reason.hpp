@@ -9,25 +9,25 @@
 namespace glint {
 
 enum class Reason : std::uint8_t {
-  none = 0,                // no error
-  no_frame_yet = 1,        // no measurement since the start
-  too_few_markers = 2,     // fewer candidates in view than a pose needs
-  no_labeling = 3,         // markers in view, but no subset has the tool's distances
-  taken_by_other = 4,      // every labeling needs a marker assigned to another tool
-  degenerate = 5,          // fewer than three distinct points
-  collinear = 6,           // the rotation about the markers' line is free
-  bad_fit = 7,             // fitted, but the residual fails the chi-square test
-  frame_late = 8,          // time stamp before that of a frame already processed
-  frame_doubled = 9,       // time stamp or sequence number already processed
-  frame_invalid = 10,      // no usable pixels, size or time stamp
-  head_pose_missing = 11,  // the pose is valid in the camera frame only
-  too_old = 12,            // the newest measurement is older than the limit
-  runs_full = 13,          // more runs of pixels than the capacity; the first ones were kept
-  blobs_full = 14,         // more blobs, or blob pixels, than the capacity; the best were kept
-  search_full = 15,        // the search reached its budget; the best result so far was kept
-  not_prepared = 16,       // the required node or table was not prepared
-  out_of_range = 17,       // a value does not fit its field and is sent as invalid
-  no_reference = 18,       // the robot frame is not estimated yet
+  none = 0,                        // no error
+  no_frame_yet = 1,                // no measurement since the start
+  too_few_markers = 2,             // fewer candidates in view than a pose needs
+  no_labeling = 3,                 // markers in view, but no subset has the tool's distances
+  markers_assigned_elsewhere = 4,  // every labeling needs a marker assigned to another tool
+  degenerate = 5,                  // fewer than three distinct points
+  collinear = 6,                   // the rotation about the markers' line is free
+  bad_fit = 7,                     // fitted, but the residual fails the chi-square test
+  frame_late = 8,                  // time stamp before that of a frame already processed
+  frame_duplicate = 9,             // time stamp or sequence number already processed
+  frame_invalid = 10,              // no usable pixels, size or time stamp
+  head_pose_missing = 11,          // the pose is valid in the camera frame only
+  too_old = 12,                    // the newest measurement is older than the limit
+  runs_full = 13,     // more runs of pixels than the capacity; the first ones were kept
+  blobs_full = 14,    // more blobs, or blob pixels, than the capacity; the best were kept
+  search_full = 15,   // the search reached its budget; the best result so far was kept
+  not_prepared = 16,  // the required node or table was not prepared
+  out_of_range = 17,  // a value does not fit its field and is sent as invalid
+  no_reference = 18,  // the robot frame is not estimated yet
   // An activation missed, or would have missed, its deadline. By the overrun policy of the chain:
   overrun_skipped = 19,    // no output
   overrun_held = 20,       // the previous output is published again

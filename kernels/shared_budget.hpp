@@ -6,20 +6,20 @@ namespace glint {
 
 class SharedBudget {
  public:
-  // Budget: share * takers_max. `takers` (at most takers_max) consumers spend from it.
-  SharedBudget(int share, int takers_max, int takers)
-      : left_(share * takers_max), share_(share), takers_left_(takers) {}
+  // Budget: share * consumers_max. `consumers` (at most consumers_max) consumers spend from it.
+  SharedBudget(int share, int consumers_max, int consumers)
+      : left_(share * consumers_max), share_(share), consumers_left_(consumers) {}
 
   // Call once per consumer, before it spends.
-  [[nodiscard]] int most_for_next() {
-    --takers_left_;
-    return left_ - share_ * takers_left_;
+  [[nodiscard]] int next_max() {
+    --consumers_left_;
+    return left_ - share_ * consumers_left_;
   }
   void spend(int amount) { left_ -= amount; }
   [[nodiscard]] int left() const { return left_; }
 
  private:
-  int left_, share_, takers_left_;
+  int left_, share_, consumers_left_;
 };
 
 }  // namespace glint

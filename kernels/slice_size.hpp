@@ -14,13 +14,13 @@ struct SliceSize {
 
   // Both are raised to at least 1.
   // NOLINTNEXTLINE(google-explicit-constructor): a number of items is a size.
-  constexpr SliceSize(int most_items, int most_steps = k_steps_max) noexcept
-      : items(most_items < 1 ? 1 : most_items), steps(most_steps < 1 ? 1 : most_steps) {}
+  constexpr SliceSize(int items_max, int steps_max = k_steps_max) noexcept
+      : items(items_max < 1 ? 1 : items_max), steps(steps_max < 1 ? 1 : steps_max) {}
 
   // Number of items that fit when each takes `steps_each`; at least one.
   [[nodiscard]] constexpr int items_of(int steps_each) const noexcept {
-    const int whole = steps / steps_each;
-    return whole < 1 ? 1 : (whole < items ? whole : items);
+    const int fitting = steps / steps_each;
+    return fitting < 1 ? 1 : (fitting < items ? fitting : items);
   }
 
   int items;
@@ -37,7 +37,7 @@ class StepBudget {
   [[nodiscard]] int left() const noexcept { return left_; }
   // Takes the steps of as many items of [from, end) as fit, at most steps_each per item. Returns
   // the first item that does not fit.
-  [[nodiscard]] int end_of(int from, int end, int steps_each) noexcept {
+  [[nodiscard]] int take_items(int from, int end, int steps_each) noexcept {
     const int items = SliceSize(SliceSize::k_steps_max, left_).items_of(steps_each);
     const int done = end - from < items ? end - from : items;
     take(done * steps_each);

@@ -19,7 +19,7 @@ namespace detail {
 
 // Row a receives the smaller, row b the larger value of each column.
 inline void exchange(TwoDoubles& a, TwoDoubles& b) {
-  const TwoDoubles low = lesser(a, b), high = greater(a, b);
+  const TwoDoubles low = minimum(a, b), high = maximum(a, b);
   a = low;
   b = high;
 }
@@ -51,9 +51,9 @@ void merge_columns(TwoDoubles* row) {
   for (int i = 0; i < rows / 2; ++i) {
     const int last = rows - 1 - i;
     const TwoDoubles a = row[i], b = row[last];
-    const TwoDoubles a_turned{a[1], a[0]}, b_turned{b[1], b[0]};
-    const TwoDoubles low = lesser(a, b_turned), high = greater(a, b_turned);
-    const TwoDoubles low_too = lesser(b, a_turned), high_too = greater(b, a_turned);
+    const TwoDoubles a_reversed{a[1], a[0]}, b_reversed{b[1], b[0]};
+    const TwoDoubles low = minimum(a, b_reversed), high = maximum(a, b_reversed);
+    const TwoDoubles low_too = minimum(b, a_reversed), high_too = maximum(b, a_reversed);
     row[i] = TwoDoubles{low[0], high[1]};
     row[last] = TwoDoubles{low_too[0], high_too[1]};
   }

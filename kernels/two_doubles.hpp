@@ -28,14 +28,14 @@ using TwoMasks = std::int64_t __attribute__((vector_size(16)));
 
 inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &from, sizeof from); }
 
-[[nodiscard]] inline TwoDoubles both(double value) { return TwoDoubles{value, value}; }
+[[nodiscard]] inline TwoDoubles broadcast_two(double value) { return TwoDoubles{value, value}; }
 
 // Keeps the lanes whose mask is set; the others become 0.
-[[nodiscard]] inline TwoDoubles where(const TwoMasks& set, const TwoDoubles& value) {
+[[nodiscard]] inline TwoDoubles keep_lanes(const TwoMasks& set, const TwoDoubles& value) {
   return reinterpret_cast<TwoDoubles>(set & reinterpret_cast<TwoMasks>(value));
 }
 
-[[nodiscard]] inline TwoDoubles lesser(const TwoDoubles& a, const TwoDoubles& b) {
+[[nodiscard]] inline TwoDoubles minimum(const TwoDoubles& a, const TwoDoubles& b) {
 #ifdef GLINT_SSE2
   return reinterpret_cast<TwoDoubles>(
       _mm_min_pd(reinterpret_cast<__m128d>(a), reinterpret_cast<__m128d>(b)));
@@ -43,7 +43,7 @@ inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &fro
   return a < b ? a : b;
 #endif
 }
-[[nodiscard]] inline TwoDoubles greater(const TwoDoubles& a, const TwoDoubles& b) {
+[[nodiscard]] inline TwoDoubles maximum(const TwoDoubles& a, const TwoDoubles& b) {
 #ifdef GLINT_SSE2
   return reinterpret_cast<TwoDoubles>(
       _mm_max_pd(reinterpret_cast<__m128d>(a), reinterpret_cast<__m128d>(b)));

@@ -30,7 +30,7 @@ struct AnchorHead {
   int reference = -1;  // index of the static reference tool; -1: none
   void operator()(const FrameVerdict& verdict, const HeadPose& head,
                   const graph::Latest<ToolSet>& tools,
-                  const graph::Parts<FittedTools, k_tool_slices>& fitted,
+                  const graph::Parts<FittedTools, k_tool_partitions>& fitted,
                   const graph::Previous<Anchor>& last, Anchor& anchor) noexcept GLINT_NONBLOCKING;
 
  private:

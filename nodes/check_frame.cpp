@@ -9,7 +9,7 @@ void CheckFrame::operator()(const FrameStamp& stamp, FrameVerdict& verdict) noex
   if (reason == Reason::none && stamp.mid_exposure > stamp.arrival) reason = Reason::frame_invalid;
   if (reason == Reason::none && !first) {
     if (stamp.mid_exposure == newest_ || stamp.sequence == sequence_) {
-      reason = Reason::frame_doubled;
+      reason = Reason::frame_duplicate;
     } else if (stamp.mid_exposure < newest_) {
       reason = Reason::frame_late;
     }
@@ -36,7 +36,7 @@ void CheckFrame::operator()(const FrameStamp& stamp, FrameVerdict& verdict) noex
     case Reason::frame_late:
       ++counts_.late;
       break;
-    case Reason::frame_doubled:
+    case Reason::frame_duplicate:
       ++counts_.doubled;
       break;
     default:

@@ -32,7 +32,7 @@ struct ShownDepth {
     std::uint64_t number = 0;
   };
 
-  MapPicture picture;
+  MapImage image;
   Scene scene;
   Links links;
   Time time;
@@ -47,23 +47,23 @@ struct MapProgress {
 
 struct ExtendMap {
   MapSettings settings;
-  int pictures_a_map = 10;
+  int images_per_map = 10;
   std::span<std::byte> memory;  // of MapSlices::bytes(settings) bytes; empty: no map is made
   Limits limits;
 
   [[nodiscard]] Reason prepare() noexcept {
     if (memory.empty()) return Reason::none;
     Arena arena(memory);
-    return map_.prepare(settings, pictures_a_map, arena);
+    return map_.prepare(settings, images_per_map, arena);
   }
-  void operator()(const ShownDepth& shown, MapProgress& progress) noexcept {
-    if (shown.number != looked_at_ && map_.look(shown.picture)) looked_at_ = shown.number;
+  void operator()(const ShownDepth& input, MapProgress& progress) noexcept {
+    if (input.number != last_number_ && map_.look(input.image)) last_number_ = input.number;
     steps_ = map_.step(limits.background_steps);
     progress = {map_.idle(), steps_, map_.totals()};
   }
 
   // Call between activations. Starts a map of all voxels if images were added since the last map.
-  void make_map() noexcept { map_.make_map(); }
+  void start_map() noexcept { map_.start_map(); }
   [[nodiscard]] const MapSlices& map() const noexcept { return map_; }
 
   // One step is about one point-to-point distance: kernels/slice_size.hpp.
@@ -75,7 +75,7 @@ struct ExtendMap {
 
  private:
   MapSlices map_;
-  std::uint64_t looked_at_ = 0;
+  std::uint64_t last_number_ = 0;
   int steps_ = 0;
 };
 static_assert(graph::Budgeted<ExtendMap, Limits>);

@@ -5,128 +5,138 @@
 namespace glint {
 namespace {
 
-UncertainPose in_base(const UncertainPose& T_camera_middle, const AnchoredHead& anchored) {
-  if (!anchored.head.valid) return T_camera_middle;
-  const Pose& T_world_camera = anchored.head.T_world_camera;
-  const Pose T_world_middle = T_world_camera * T_camera_middle.pose;
-  return {T_camera_middle.time, T_world_middle,
-          turned_covariance(T_camera_middle.covariance, T_world_camera.rotation) +
-              anchored.fresh_at(T_world_middle.translation)};
+UncertainPose in_base(const UncertainPose& T_camera_centroid, const CorrectedHead& corrected_head) {
+  if (!corrected_head.head.valid) return T_camera_centroid;
+  const Pose& T_world_camera = corrected_head.head.T_world_camera;
+  const Pose T_world_centroid = T_world_camera * T_camera_centroid.pose;
+  return {T_camera_centroid.time, T_world_centroid,
+          rotated_covariance(T_camera_centroid.covariance, T_world_camera.rotation) +
+              corrected_head.independent_at(T_world_centroid.translation)};
 }
 
-CorrelatedErrors in_base(const CorrelatedErrors& of_camera, const AnchoredHead& anchored) {
-  if (!anchored.head.valid) return of_camera;
-  const Quaternion& turn = anchored.head.T_world_camera.rotation;
-  return {turned_covariance(of_camera.fast, turn), turned_covariance(of_camera.slow, turn)};
+CorrelatedErrors in_base(const CorrelatedErrors& of_camera, const CorrectedHead& corrected_head) {
+  if (!corrected_head.head.valid) return of_camera;
+  const Quaternion& rotation = corrected_head.head.T_world_camera.rotation;
+  return {rotated_covariance(of_camera.fast, rotation),
+          rotated_covariance(of_camera.slow, rotation)};
 }
 
-MeasuredPoint in_base(const NamedMarker& marker, const Tool& tool, const AnchoredHead& anchored) {
-  const Pose T_base_camera = anchored.head.valid ? anchored.head.T_world_camera : Pose{};
-  const Matrix3 turn = T_base_camera.rotation.toRotationMatrix();
+MeasuredPoint in_base(const IdentifiedMarker& marker, const Tool& tool,
+                      const CorrectedHead& corrected_head) {
+  const Pose T_base_camera =
+      corrected_head.head.valid ? corrected_head.head.T_world_camera : Pose{};
+  const Matrix3 rotation = T_base_camera.rotation.toRotationMatrix();
   MeasuredPoint point;
   point.model_m = tool.markers_m[static_cast<std::size_t>(marker.of_tool)] - tool.middle_m();
   point.measured_m = T_base_camera * marker.centre_m;
-  point.covariance_m2 = turn * marker.covariance_m2 * turn.transpose();
-  if (anchored.head.valid)
-    point.covariance_m2 += anchored.fresh_at(point.measured_m).topLeftCorner<3, 3>();
+  point.covariance_m2 = rotation * marker.covariance_m2 * rotation.transpose();
+  if (corrected_head.head.valid)
+    point.covariance_m2 += corrected_head.independent_at(point.measured_m).topLeftCorner<3, 3>();
   return point;
 }
 
-bool within(const Matrix3& covariance, double sigma) {
+bool sigmas_within(const Matrix3& covariance, double sigma) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(covariance(axis, axis) <= sigma * sigma)) return false;
   }
   return true;
 }
 
-bool is_sure(const MotionCovariance& covariance, const SureLimits& sure) {
-  return within(covariance.block<3, 3>(k_position, k_position), sure.position_m) &&
-         within(covariance.block<3, 3>(k_rotation, k_rotation), sure.rotation_rad);
+bool is_precise(const MotionCovariance& covariance, const PrecisionLimits& precision_limits) {
+  return sigmas_within(covariance.block<3, 3>(k_position, k_position),
+                       precision_limits.position_m) &&
+         sigmas_within(covariance.block<3, 3>(k_rotation, k_rotation),
+                       precision_limits.rotation_rad);
 }
 
 }  // namespace
 
 // Updates the filter by one or two markers; leaves `reason`, which states why there is no pose.
-void FollowMotion::follow_few(const FewMarkers& few, const Tool& shape,
-                              const AnchoredHead& anchored, Time time, int place,
-                              FollowedTool& tool) noexcept {
-  const ReferenceFrame base = anchored.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
-  if (few.count == 0 || tool.base != base) return;
+void FollowMotion::update_partial(const PartialMarkers& partial, const Tool& shape,
+                                  const CorrectedHead& corrected_head, Time time, int slot,
+                                  TrackedTool& tool) noexcept {
+  const ReferenceFrame base =
+      corrected_head.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
+  if (partial.count == 0 || tool.base != base) return;
   std::array<MeasuredPoint, k_points_max> points;
   std::uint8_t mask = 0;
-  for (int i = 0; i < few.count; ++i) {
-    const NamedMarker& marker = few.items[static_cast<std::size_t>(i)];
-    points[static_cast<std::size_t>(i)] = in_base(marker, shape, anchored);
+  for (int i = 0; i < partial.count; ++i) {
+    const IdentifiedMarker& marker = partial.items[static_cast<std::size_t>(i)];
+    points[static_cast<std::size_t>(i)] = in_base(marker, shape, corrected_head);
     mask = static_cast<std::uint8_t>(mask | (1u << marker.of_tool));
   }
-  const auto count = static_cast<std::size_t>(few.count);
-  if (tool.motion.update(time, {points.data(), count}, settings, sums_[place]) != Reason::none)
+  const auto count = static_cast<std::size_t>(partial.count);
+  if (tool.motion.update(time, {points.data(), count}, settings, sums_[slot]) != Reason::none)
     return;
   ++counts_[2];
-  tool.few_mask = mask;
-  tool.estimate = tool.motion.estimate(sums_[place]);
-  tool.correlated_covariance = tool.motion.correlated_covariance(sums_[place]);
-  tool.noise = tool.motion.partial_noise_scale(settings);
-  tool.stands = is_sure(tool.estimate.covariance, sure);
+  tool.partial_mask = mask;
+  tool.estimate = tool.motion.estimate(sums_[slot]);
+  tool.correlated_covariance = tool.motion.correlated_covariance(sums_[slot]);
+  tool.noise = tool.motion.partial_visibility_noise_scale(settings);
+  tool.is_publishable = is_precise(tool.estimate.covariance, precision_limits);
 }
 
 void FollowMotion::operator()(
     const FrameVerdict& verdict, const Anchor& anchor, const graph::Latest<ToolSet>& tools,
-    const graph::Parts<FittedTools, k_tool_slices>& fitted, const SeenFew& few,
-    const graph::Previous<graph::Parts<FollowedTools, k_tool_slices>>& last, graph::Slice slice,
-    FollowedTools& followed) noexcept {
+    const graph::Parts<FittedTools, k_tool_partitions>& fitted, const SeenFew& partial,
+    const graph::Previous<graph::Parts<FollowedTools, k_tool_partitions>>& last,
+    graph::Partition partition, FollowedTools& followed) noexcept {
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
   counts_ = {{1}};
-  int place = 0;
-  for (int t = slice.index; t < count; t += slice.count, ++place) {
+  int slot = 0;
+  for (int t = partition.index; t < count; t += partition.count, ++slot) {
     ++counts_[1];
-    FollowedTool& tool = followed.items[place];
-    tool = last.value()[slice.index].items[place];
+    TrackedTool& tool = followed.items[slot];
+    tool = last.value()[partition.index].items[slot];
     tool.reason = verdict.reason;
-    tool.few_mask = 0;
-    tool.stands = false;
-    tool.ambiguous = tool.filtered = false;
+    tool.partial_mask = 0;
+    tool.is_publishable = false;
+    tool.ambiguous = tool.use_filter_pose = false;
     tool.in_use = true;
     if (tool.identity != set.items[t].identity) {
-      tool.motion.forget();
+      tool.motion.reset();
       tool.identity = set.items[t].identity;
     }
     if (!verdict.usable()) continue;  // a rejected frame leaves the track unchanged
-    if (verdict.resynchronised) tool.motion.forget();
-    const AnchoredHead& anchored = anchor.now;
+    if (verdict.resynchronised) tool.motion.reset();
+    const CorrectedHead& corrected_head = anchor.now;
     if (tool.base == ReferenceFrame::world) {
-      if (anchored.moved_along) tool.motion.move(anchored.moved);
-      if (anchored.in_gap) tool.motion.loosen(anchored.stepped_at(tool.motion.place()));
+      if (corrected_head.moved_along) tool.motion.move(corrected_head.gap_correction);
+      if (corrected_head.in_gap)
+        tool.motion.inflate_covariance(corrected_head.step_covariance_at(tool.motion.place()));
     }
-    const FittedTool& found = fitted[slice.index].tools[t];
+    const FittedTool& found = fitted[partition.index].tools[t];
     tool.reason = found.reason;
     if (found.reason != Reason::none) {
-      follow_few(few.tools[t], set.items[t], anchored, verdict.stamp.mid_exposure, place, tool);
+      update_partial(partial.tools[t], set.items[t], corrected_head, verdict.stamp.mid_exposure,
+                     slot, tool);
       continue;
     }
     const ReferenceFrame base =
-        anchored.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
-    if (tool.base != base || found.turned) tool.motion.forget();
+        corrected_head.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
+    if (tool.base != base || found.contradicts_track) tool.motion.reset();
     tool.base = base;
-    const UncertainPose seen = told_middle_of(found, set.items[t], verdict.stamp.mid_exposure);
-    const MotionUpdate done =
-        tool.motion.update(in_base(seen, anchored), in_base(found.systematic.correlated, anchored),
-                           settings, sums_[place]);
+    const UncertainPose seen =
+        filter_measurement_of(found, set.items[t], verdict.stamp.mid_exposure);
+    const MotionUpdate done = tool.motion.update(
+        in_base(seen, corrected_head), in_base(found.systematic.correlated, corrected_head),
+        settings, sums_[slot]);
     tool.reason = done.reason;
     if (done.reason != Reason::none) continue;
     ++counts_[2];
-    counts_[3] += done.rest_tests;
-    tool.estimate = tool.motion.estimate(sums_[place]);
-    tool.correlated_covariance = tool.motion.correlated_covariance(sums_[place]);
+    counts_[3] += done.static_tests;
+    tool.estimate = tool.motion.estimate(sums_[slot]);
+    tool.correlated_covariance = tool.motion.correlated_covariance(sums_[slot]);
     tool.noise = tool.motion.noise_scale();
     tool.ambiguous = found.ambiguous();
-    tool.filtered = !within(found.covariance.bottomRightCorner<3, 3>(), sure.rotation_rad);
-    tool.stands = !tool.ambiguous && is_sure(tool.estimate.covariance, sure);
+    tool.use_filter_pose =
+        !sigmas_within(found.covariance.bottomRightCorner<3, 3>(), precision_limits.rotation_rad);
+    tool.is_publishable = !tool.ambiguous && is_precise(tool.estimate.covariance, precision_limits);
   }
   // Clear used entries only: clearing all would cost more than tracking a tool.
-  for (; place < k_tools_per_slice; ++place) {
-    if (followed.items[place].in_use) followed.items[place] = {};
+  for (; slot < k_tools_per_partition; ++slot) {
+    if (followed.items[slot].in_use) followed.items[slot] = {};
   }
 }
 

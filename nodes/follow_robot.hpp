@@ -21,11 +21,11 @@ struct RobotProgress {
   bool free = true;  // nothing is borrowed
   int steps = 0;     // of this slice
   // Numbers of images so far: pose followed, rejected as a jump, inconclusive.
-  std::int64_t followed = 0, jumps = 0, unsure = 0;
+  std::int64_t followed = 0, jumps = 0, inconclusive = 0;
   FollowOutcome last = FollowOutcome::no_reference;
-  double shift_m = 0, turn_rad = 0;  // of the last jump
-  Time time;                         // of the last image whose pose was followed
-  RobotFrame frame;                  // the current robot pose, once an image was followed
+  double translation_m = 0, rotation_rad = 0;  // of the last jump
+  Time time;                                   // of the last image whose pose was followed
+  RobotFrame frame;                            // the current robot pose, once an image was followed
 };
 
 struct FollowRobot {
@@ -33,7 +33,7 @@ struct FollowRobot {
   LinkCloud model;          // empty: no robot is tracked
   ShownDepth::Links links;  // link poses used by prepare()
   Pose T_world_robot;
-  Matrix6 covariance = Matrix6::Zero();  // of T_world_robot, as in ReferenceFollower
+  Matrix6 covariance = Matrix6::Zero();  // of T_world_robot, as in RobotPoseTracker
   int pixels_max = 0;                    // of the scene part of an image
   Limits limits;
 
@@ -52,14 +52,14 @@ struct FollowRobot {
     if (reason == Reason::none) follower_.begin(T_world_robot, covariance, Time{-1});
     return reason;
   }
-  void operator()(const ShownDepth& shown, RobotProgress& progress) noexcept {
-    if (shown.number != looked_at_) take_up(shown);
+  void operator()(const ShownDepth& input, RobotProgress& progress) noexcept {
+    if (input.number != last_number_) start_image(input);
     steps_ = 0;
     if (posing_) pose();
-    if (!posing_ && steps_ < limits.reference_steps) follow();
-    known_.free = !posing_ && follower_.idle();
-    known_.steps = steps_;
-    progress = known_;
+    if (!posing_ && steps_ < limits.tracking_steps) follow();
+    progress_.free = !posing_ && follower_.idle();
+    progress_.steps = steps_;
+    progress = progress_;
   }
 
   // One step is about one point-to-point distance: kernels/slice_size.hpp. The last item of a slice
@@ -67,66 +67,66 @@ struct FollowRobot {
   static_assert(k_posed_item_steps_max <= k_follow_item_steps_max);
   static constexpr std::array<std::string_view, 2> k_loops = {"call", "steps"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    const int steps = limits.reference_steps;
+    const int steps = limits.tracking_steps;
     return {{1, steps > 0 ? steps + k_follow_item_steps_max : 0}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return {{1, steps_}}; }
 
  private:
-  void take_up(const ShownDepth& shown) noexcept {
-    looked_at_ = shown.number;
-    const bool follows = !model.cloud.points.empty() && limits.reference_steps > 0;
-    const bool posed = shown.links.number == posed_by_;
-    const bool poses = shown.links.poses != nullptr;
-    if (!follows || shown.scene.depth_m.empty() || !(posed || poses)) return;
-    view_.camera = shown.scene.camera;
-    view_.depth_m = shown.scene.depth_m;
-    view_.T_camera_world = shown.picture.T_world_camera.inverse();
+  void start_image(const ShownDepth& input) noexcept {
+    last_number_ = input.number;
+    const bool follows = !model.cloud.points.empty() && limits.tracking_steps > 0;
+    const bool posed = input.links.number == posed_by_;
+    const bool poses = input.links.poses != nullptr;
+    if (!follows || input.scene.depth_m.empty() || !(posed || poses)) return;
+    view_.camera = input.scene.camera;
+    view_.depth_m = input.scene.depth_m;
+    view_.T_camera_world = input.image.T_world_camera.inverse();
     view_.cloud = {points_, normals_, model.cloud.spacing_m};
-    time_ = shown.time;
+    time_ = input.time;
     posing_ = !posed;
     if (posed) {
       (void)follower_.look(view_, time_);
       return;
     }
     posed_by_.reset();
-    posing_by_ = shown.links.number;
-    (void)run_.start(model, *shown.links.poses, points_, normals_);  // fits: see prepare()
+    posing_by_ = input.links.number;
+    (void)run_.start(model, *input.links.poses, points_, normals_);  // fits: see prepare()
   }
   void pose() noexcept {
-    StepBudget budget(limits.reference_steps);
+    StepBudget budget(limits.tracking_steps);
     posing_ = run_.step(budget);
-    steps_ = limits.reference_steps - budget.left();
+    steps_ = limits.tracking_steps - budget.left();
     if (posing_) return;
     if (run_.reason() != Reason::none) {  // a link has no pose: inconclusive
-      ++known_.unsure;
+      ++progress_.inconclusive;
       return;
     }
     posed_by_ = posing_by_;
     (void)follower_.look(view_, time_);
   }
   void follow() noexcept {
-    const bool under_way = !follower_.idle();
-    steps_ += follower_.step(limits.reference_steps - steps_);
-    if (under_way && follower_.idle()) note();
+    const bool was_active = !follower_.idle();
+    steps_ += follower_.step(limits.tracking_steps - steps_);
+    if (was_active && follower_.idle()) store_outcome();
   }
-  void note() noexcept {
+  void store_outcome() noexcept {
     const FollowReport& report = follower_.report();
-    known_.last = report.outcome;
+    progress_.last = report.outcome;
     if (report.outcome == FollowOutcome::jumped) {
-      ++known_.jumps;
-      known_.shift_m = report.shift_m;
-      known_.turn_rad = report.turn_rad;
+      ++progress_.jumps;
+      progress_.translation_m = report.shift_m;
+      progress_.rotation_rad = report.turn_rad;
     }
     if (report.outcome != FollowOutcome::followed) {
-      known_.unsure += report.outcome == FollowOutcome::jumped ? 0 : 1;
+      progress_.inconclusive += report.outcome == FollowOutcome::jumped ? 0 : 1;
       return;
     }
-    ++known_.followed;
-    known_.time = time_;
-    known_.frame.state = RegistrationState::accepted;
-    known_.frame.T_world_robot = follower_.reference(time_).T_world_base;
-    known_.frame.rms_m = report.seen.residual_m;
+    ++progress_.followed;
+    progress_.time = time_;
+    progress_.frame.state = RegistrationState::accepted;
+    progress_.frame.T_world_robot = follower_.reference(time_).T_world_base;
+    progress_.frame.rms_m = report.seen.residual_m;
   }
 
   std::vector<Vector3f> points_, normals_;  // the model's, in the robot's base
@@ -134,11 +134,11 @@ struct FollowRobot {
   PoseCloudRun run_;
   std::uint64_t posing_by_ = 0;
   bool posing_ = false;
-  ReferenceFollower follower_;
+  RobotPoseTracker follower_;
   SceneView view_;
-  RobotProgress known_;
+  RobotProgress progress_;
   Time time_;
-  std::uint64_t looked_at_ = 0;
+  std::uint64_t last_number_ = 0;
   int steps_ = 0;
 };
 static_assert(graph::Budgeted<FollowRobot, Limits>);

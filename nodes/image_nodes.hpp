@@ -17,7 +17,8 @@ namespace glint {
 struct RoiThreshold {
   std::uint16_t threshold = 0;
   Limits limits;
-  void operator()(const Frame& frame, const Rois& rois, graph::Slice band, Runs& runs) noexcept {
+  void operator()(const Frame& frame, const Rois& rois, graph::Partition band,
+                  Runs& runs) noexcept {
     work_ = threshold_runs(frame, rois, threshold, {band.index, band.count}, runs, limits);
   }
 
@@ -46,9 +47,9 @@ struct FindBlobs {
     for (int i = 0; i < k_row_bands; ++i) in_order[static_cast<std::size_t>(i)] = &bands[i];
     const std::span predicted(predictions.markers_px.data(),
                               static_cast<std::size_t>(predictions.marker_count));
-    work_ =
-        find_blobs(frame, in_order, settings, {predicted, predictions.everywhere, predictions.turn},
-                   scratch_, blobs, limits);
+    work_ = find_blobs(frame, in_order, settings,
+                       {predicted, predictions.search_whole_frame, predictions.frame_number},
+                       scratch_, blobs, limits);
   }
 
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "runs", "distances", "blobs",
@@ -75,11 +76,11 @@ struct BackProject {
   Limits limits;
   // Computes the lens's effect on a sphere's image. Call after `camera` is set.
   [[nodiscard]] Reason prepare() noexcept {
-    shift_ = sphere_shift(camera);
+    sphere_offset_ = sphere_offset(camera);
     return Reason::none;
   }
   void operator()(const Frame& frame, const Blobs& blobs, Markers& markers) noexcept {
-    work_ = back_project(frame, blobs, camera, shift_, depth, nominal, markers, limits);
+    work_ = back_project(frame, blobs, camera, sphere_offset_, depth, nominal, markers, limits);
   }
 
   static constexpr std::array<std::string_view, 6> k_loops = {"call",   "blobs",   "lens_steps",
@@ -93,7 +94,7 @@ struct BackProject {
   static constexpr graph::LoopCounts counts_of(const BackProjectWork& work) noexcept {
     return {{1, work.blobs, work.lens_steps, work.pixels, work.samples, work.unwrapped}};
   }
-  SphereShift shift_;
+  SphereOffset sphere_offset_;
   BackProjectWork work_;
 };
 static_assert(graph::Budgeted<BackProject, Limits>);

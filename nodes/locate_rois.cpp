@@ -49,16 +49,17 @@ bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
 // Part of the frame to search, different in each frame: half or a quarter of the columns; in every
 // fourth frame also a quarter of the rows. Multiples of the golden ratio move its centre over the
 // whole frame and leave no large gap for long (low-discrepancy sequence).
-Roi part_of_frame(const CameraModel& camera, std::uint32_t turn) {
+Roi part_of_frame(const CameraModel& camera, std::uint32_t frame_number) {
   constexpr std::uint32_t golden = 0x9E3779B9;  // 2^32 / phi
   const auto share = [](std::uint32_t position, int room) {
     return static_cast<int>(position * static_cast<std::uint64_t>(room) >> 32);
   };
-  const int width = camera.width / (turn % 2 == 0 ? 4 : 2);
-  const int height = turn % 4 == 0 ? camera.height / 4 : camera.height;
-  const int x = share(turn * golden, camera.width) - width / 2;
-  const int y =
-      height == camera.height ? 0 : share(turn / 4 * golden * golden, camera.height) - height / 2;
+  const int width = camera.width / (frame_number % 2 == 0 ? 4 : 2);
+  const int height = frame_number % 4 == 0 ? camera.height / 4 : camera.height;
+  const int x = share(frame_number * golden, camera.width) - width / 2;
+  const int y = height == camera.height
+                    ? 0
+                    : share(frame_number / 4 * golden * golden, camera.height) - height / 2;
   return {std::max(x, 0), std::max(y, 0), std::min(x + width, camera.width),
           std::min(y + height, camera.height)};
 }
@@ -68,15 +69,15 @@ Roi part_of_frame(const CameraModel& camera, std::uint32_t turn) {
 // Searches one part of the frame and at most limits.tools - 1 boxes of tools, tracked tools first.
 void LocateRois::search_part(const ToolSet& set, int count, const Predictions& predictions,
                              Rois& rois) noexcept {
-  rois.items[0] = part_of_frame(camera, predictions.turn);
+  rois.items[0] = part_of_frame(camera, predictions.frame_number);
   rois.count = 1;
   int boxes = 1;
   for (const bool missed : {false, true}) {
     for (int t = 0; t < count && boxes < limits.tools; ++t) {
       const Prediction& prediction = predictions.tools[t];
       Roi box;
-      if (!set.items[t].present() || !prediction.has_prior || prediction.missed_last != missed ||
-          !box_of(camera, prediction, box))
+      if (!set.items[t].present() || !prediction.has_prior ||
+          prediction.undetected_last != missed || !box_of(camera, prediction, box))
         continue;
       ++boxes;
       ++counts_[1];
@@ -92,7 +93,7 @@ void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<Too
   if (!verdict.usable()) return;
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
-  if (predictions.narrowed) return search_part(set, count, predictions, rois);
+  if (predictions.search_part_of_frame) return search_part(set, count, predictions, rois);
   bool whole_frame = false;
   for (int t = 0; t < count && !whole_frame; ++t) {
     if (!set.items[t].present()) continue;
@@ -100,7 +101,7 @@ void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<Too
     ++counts_[1];
     Roi box;
     whole_frame =
-        !prediction.has_prior || prediction.missed_last || !box_of(camera, prediction, box);
+        !prediction.has_prior || prediction.undetected_last || !box_of(camera, prediction, box);
     if (!whole_frame) counts_[2] += add_disjoint(box, rois);
   }
   if (whole_frame) {

@@ -30,8 +30,8 @@ struct NameFew {
                   const Assignment& assignment, SeenFew& seen) noexcept GLINT_NONBLOCKING;
 
  private:
-  std::array<ExpectedTool, k_tools_max> expected_;
-  FewScratch scratch_;
+  std::array<PredictedTool, k_tools_max> expected_;
+  PartialScratch scratch_;
   graph::LoopCounts counts_;
 };
 

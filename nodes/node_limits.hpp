@@ -11,8 +11,8 @@
 namespace glint {
 
 // Partition i takes the tools with index modulo n = i, n partitions. The first one has the most.
-[[nodiscard]] constexpr int tools_of(const Limits& limits, graph::Slice slice) {
-  return std::max(0, (limits.tools - slice.index + slice.count - 1) / slice.count);
+[[nodiscard]] constexpr int tools_of(const Limits& limits, graph::Partition partition) {
+  return std::max(0, (limits.tools - partition.index + partition.count - 1) / partition.count);
 }
 
 // A tool set may be replaced at run time; tools and markers beyond the limits are ignored.

@@ -24,13 +24,13 @@ PoseSample without_pose(const PoseSample& sample, TrackState state) {
 }
 
 // Zeroes all derivatives: neither the next frame's prediction nor the tick group moves the tool.
-void stand_still(Track& track) {
+void zero_velocity(Track& track) {
   track.has_previous = false;
   track.motion.velocity_m_s = track.motion.acceleration_m_s2 = Vector3::Zero();
   track.motion.angular_velocity_rad_s = track.motion.angular_acceleration_rad_s2 = Vector3::Zero();
 }
 
-void move_on(Duration lead, PoseSample& sample) {
+void extrapolate_sample(Duration lead, PoseSample& sample) {
   const double seconds = lead.seconds();
   sample.pose.translation += sample.velocity_m_s * seconds;
   sample.pose.rotation =
@@ -40,16 +40,16 @@ void move_on(Duration lead, PoseSample& sample) {
 
 }  // namespace
 
-bool substitute(OverrunPolicy policy, const OverrunFrame& frame, const Estimates& in_time,
+bool substitute(OverrunPolicy policy, const OverrunFrame& frame, const Estimates& timely,
                 Estimates& out) noexcept {
   if (policy == OverrunPolicy::skip_output) return false;
   const Reason reason = reason_of(policy);
-  out = in_time;
+  out = timely;
   out.verdict.stamp = frame.stamp;
   out.verdict.reason = reason;
   for (int t = 0; t < out.tool_count; ++t) {
     Track& track = out.tracks[static_cast<std::size_t>(t)];
-    track.seen_now = false;
+    track.measured_now = false;
     if (policy == OverrunPolicy::stop_safe) {
       track = Track{};
       track.reason = reason;
@@ -58,7 +58,7 @@ bool substitute(OverrunPolicy policy, const OverrunFrame& frame, const Estimates
     if (!track.alive) continue;
     track.reason = reason;
     if (policy == OverrunPolicy::hold_last) {
-      stand_still(track);
+      zero_velocity(track);
     } else if (track.has_previous) {
       const Pose T_base_tool =
           extrapolate(track.previous, track.newest, frame.stamp.mid_exposure, frame.lost_after);
@@ -72,17 +72,17 @@ bool substitute(OverrunPolicy policy, const OverrunFrame& frame, const Estimates
   return true;
 }
 
-bool substitute(OverrunPolicy policy, const OverrunTick& tick, const PoseSamples& in_time,
+bool substitute(OverrunPolicy policy, const OverrunTick& tick, const PoseSamples& timely,
                 PoseSamples& out) noexcept {
   if (policy == OverrunPolicy::skip_output) return false;
   const Reason reason = reason_of(policy);
-  out.count = in_time.count;
-  out.any_frame = in_time.any_frame;
-  out.newest_frame = in_time.newest_frame;
-  for (int t = 0; t < in_time.count; ++t) {
+  out.count = timely.count;
+  out.any_frame = timely.any_frame;
+  out.newest_frame = timely.newest_frame;
+  for (int t = 0; t < timely.count; ++t) {
     const auto i = static_cast<std::size_t>(t);
     PoseSample& sample = out.items[i];
-    sample = in_time.items[i];
+    sample = timely.items[i];
     const Duration lead = tick.now.tick - sample.tick;
     sample.tick = tick.now.tick;
     sample.tick_number = tick.now.number;
@@ -100,7 +100,7 @@ bool substitute(OverrunPolicy policy, const OverrunTick& tick, const PoseSamples
     }
     sample.reason = reason;
     sample.state = TrackState::predicted;
-    if (policy == OverrunPolicy::predict) move_on(lead, sample);
+    if (policy == OverrunPolicy::predict) extrapolate_sample(lead, sample);
   }
   return true;
 }

@@ -40,7 +40,7 @@ struct OverrunTick {
 //   predict    each tool continues at its last velocity, no longer `measured`
 //   stop_safe  each tool is lost until a frame meets its deadline again
 [[nodiscard]] bool substitute(graph::OverrunPolicy policy, const OverrunFrame& frame,
-                              const Estimates& in_time, Estimates& out) noexcept;
+                              const Estimates& timely, Estimates& out) noexcept;
 
 // Tick group. Returns false if nothing is published at this tick.
 //   hold_last  the samples of the last timely tick, with their present age, as `predicted`
@@ -49,6 +49,6 @@ struct OverrunTick {
 // All samples carry the buttons of this tick, also without a pose: these were received in time. A
 // released button must not stay held because a pose was late.
 [[nodiscard]] bool substitute(graph::OverrunPolicy policy, const OverrunTick& tick,
-                              const PoseSamples& in_time, PoseSamples& out) noexcept;
+                              const PoseSamples& timely, PoseSamples& out) noexcept;
 
 }  // namespace glint

@@ -22,10 +22,10 @@ Reason left_unsearched(const Markers& markers, const Predictions& predictions,
   if (!missed) return Reason::none;
   if (markers.incomplete == Reason::runs_full) return Reason::runs_full;
   if (prediction.has_prior) return Reason::none;
-  return predictions.narrowed ? Reason::runs_full : markers.incomplete;
+  return predictions.search_part_of_frame ? Reason::runs_full : markers.incomplete;
 }
 
-void own(const Labeling& labeling, int tool, MarkerOwners& owners) {
+void set_owner(const Labeling& labeling, int tool, MarkerOwners& owners) {
   for (const std::int16_t marker : labeling.marker) {
     if (marker >= 0)
       owners[static_cast<std::size_t>(marker) % k_blobs_max] = static_cast<std::int8_t>(tool);
@@ -36,7 +36,7 @@ void own(const Labeling& labeling, int tool, MarkerOwners& owners) {
 
 void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
                             const graph::Latest<ToolSet>& tools, const Predictions& predictions,
-                            graph::Slice slice, ToolLabelings& labelings) noexcept {
+                            graph::Partition partition, ToolLabelings& labelings) noexcept {
   counts_ = {{1}};
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
@@ -45,16 +45,17 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
   gated.search_steps_max = 0;
   // Gates are never narrower than for the declared noise: residuals do not show the error of a
   // marker that is partially occluded or merged with a stray reflection.
-  const double noisier =
-      predictions.noise.known ? predictions.noise.range_sigma_m / settings.range_sigma_m : 1;
-  if (noisier > 1) {
-    gated.range_sigma_m *= noisier;
-    gated.max_rms_m *= noisier;
+  const double noise_ratio = predictions.noise.has_residuals
+                                 ? predictions.noise.range_sigma_m / settings.range_sigma_m
+                                 : 1;
+  if (noise_ratio > 1) {
+    gated.range_sigma_m *= noise_ratio;
+    gated.max_rms_m *= noise_ratio;
   }
-  if (predictions.noise.known) {
+  if (predictions.noise.has_residuals) {
     gated.pixel_sigma_px = std::max(gated.pixel_sigma_px, predictions.noise.pixel_sigma_px);
   }
-  for (int t = slice.index; t < count; t += slice.count) {
+  for (int t = partition.index; t < count; t += partition.count) {
     const auto i = static_cast<std::size_t>(t);
     Labelings& out = labelings.tools[i];
     const Tool& tool = set.items[i];
@@ -66,8 +67,8 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
     const Prediction& prediction = predictions.tools[i];
     gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
     gated.prior_sigma_m = prediction.reach_m / k_reach_sigmas;
-    gated.only_near = prediction.only_near;
-    gated.few_gate_m = prediction.reach_m + 3 * gated.range_sigma_m;
+    gated.only_near = prediction.within_reach_only;
+    gated.partial_gate_m = prediction.reach_m + 3 * gated.range_sigma_m;
     gated.search_steps_max += limits.search_steps;
     const CorrespondWork work = propose_labelings(
         markers, tool, gated, prediction.has_prior ? &prediction.T_camera_tool : nullptr, scratch_,
@@ -83,7 +84,7 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
 }
 
 void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
-                               const graph::Parts<ToolLabelings, k_tool_slices>& labelings,
+                               const graph::Parts<ToolLabelings, k_tool_partitions>& labelings,
                                Assignment& assignment) noexcept {
   const int count = tools_within(tools.value(), limits);
   counts_ = {{1}};
@@ -91,7 +92,7 @@ void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<
   if (!verdict.usable()) return;
   for (int t = 0; t < count; ++t) {
     const auto i = static_cast<std::size_t>(t);
-    per_tool_[i] = labelings[t % k_tool_slices].tools[i];
+    per_tool_[i] = labelings[t % k_tool_partitions].tools[i];
   }
   const AssignWork work = assign_markers(first(per_tool_, count), first(chosen_, count),
                                          first(assignment.reason, count));
@@ -100,18 +101,18 @@ void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<
     const auto i = static_cast<std::size_t>(t);
     if (chosen_[i] < 0) continue;
     assignment.labeling[i] = per_tool_[i].items[static_cast<std::size_t>(chosen_[i])];
-    own(assignment.labeling[i], t, owners_);
+    set_owner(assignment.labeling[i], t, owners_);
   }
   int tests = work.tests;
   for (int t = 0; t < count; ++t) {
     const auto i = static_cast<std::size_t>(t);
-    assignment.rival[i].count = 0;
+    assignment.alternative[i].count = 0;
     if (chosen_[i] < 0) continue;
-    const int rival =
-        rival_of(per_tool_[i], chosen_[i], t, owners_, tools.value().items[i].tip_m, tests);
-    if (rival < 0) continue;
-    assignment.rival[i] = per_tool_[i].items[static_cast<std::size_t>(rival)];
-    own(assignment.rival[i], t, owners_);  // RefinePose may select it
+    const int alternative =
+        alternative_of(per_tool_[i], chosen_[i], t, owners_, tools.value().items[i].tip_m, tests);
+    if (alternative < 0) continue;
+    assignment.alternative[i] = per_tool_[i].items[static_cast<std::size_t>(alternative)];
+    set_owner(assignment.alternative[i], t, owners_);  // RefinePose may select it
   }
   counts_ = {{1, count, work.rounds, tests}};
 }

@@ -23,11 +23,11 @@ struct Correspond {
       "call",       "tools",         "markers", "pairs",
       "pair_tests", "words_written", "steps",   "words_narrowed"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    return worst(limits, {0, k_tool_slices});
+    return worst(limits, {0, k_tool_partitions});
   }
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
-                                                         graph::Slice slice) noexcept {
-    const std::int64_t tools = tools_of(limits, slice);
+                                                         graph::Partition partition) noexcept {
+    const std::int64_t tools = tools_of(limits, partition);
     const std::int64_t blobs = limits.blobs;
     const std::int64_t pairs = blobs * (blobs - 1) / 2;
     const std::int64_t distances = limits.markers_per_tool * (limits.markers_per_tool - 1) / 2;
@@ -42,7 +42,7 @@ struct Correspond {
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Predictions& predictions,
-                  graph::Slice slice, ToolLabelings& labelings) noexcept GLINT_NONBLOCKING;
+                  graph::Partition partition, ToolLabelings& labelings) noexcept GLINT_NONBLOCKING;
 
  private:
   CorrespondScratch scratch_;
@@ -62,7 +62,7 @@ struct AssignMarkers {
 
   Limits limits;
   void operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
-                  const graph::Parts<ToolLabelings, k_tool_slices>& labelings,
+                  const graph::Parts<ToolLabelings, k_tool_partitions>& labelings,
                   Assignment& assignment) noexcept GLINT_NONBLOCKING;
 
  private:

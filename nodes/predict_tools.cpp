@@ -15,18 +15,19 @@ void express(const Pose& T_frame_base, MovingPose& moving, Matrix6& covariance,
   moving.pose = T_frame_base * moving.pose;
   moving.velocity_m_s = T_frame_base.rotation * moving.velocity_m_s;
   moving.angular_velocity_rad_s = T_frame_base.rotation * moving.angular_velocity_rad_s;
-  covariance = turned_covariance(covariance, T_frame_base.rotation);
-  systematic = turned_covariance(systematic, T_frame_base.rotation);
+  covariance = rotated_covariance(covariance, T_frame_base.rotation);
+  systematic = rotated_covariance(systematic, T_frame_base.rotation);
 }
 
-bool is_placed(const RobotFrame& robot, const Estimates& known) {
+bool has_robot_pose(const RobotFrame& robot, const Estimates& estimates) {
   const bool registered =
       robot.state == RegistrationState::given || robot.state == RegistrationState::accepted;
-  return registered && (!robot.in_reference || known.reference_known);
+  return registered && (!robot.in_reference || estimates.has_reference);
 }
 
-Pose T_world_robot(const RobotFrame& robot, const Estimates& known) {
-  return robot.in_reference ? known.T_world_reference * robot.T_world_robot : robot.T_world_robot;
+Pose T_world_robot(const RobotFrame& robot, const Estimates& estimates) {
+  return robot.in_reference ? estimates.T_world_reference * robot.T_world_robot
+                            : robot.T_world_robot;
 }
 
 double axis_sigma(const Matrix6& covariance, int first) {
@@ -41,13 +42,13 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
                               const graph::Latest<RobotFrame>& robot,
                               const graph::Latest<PenButtons>& buttons,
                               PoseSamples& samples) noexcept {
-  const Estimates& known = estimates.value();
-  samples.count = std::min(known.tool_count, limits.tools);
+  const Estimates& estimates_now = estimates.value();
+  samples.count = std::min(estimates_now.tool_count, limits.tools);
   samples.any_frame = estimates.version() > 0;
-  samples.newest_frame = known.verdict.stamp.arrival;
+  samples.newest_frame = estimates_now.verdict.stamp.arrival;
   counts_ = {{1, samples.count}};
   for (int t = 0; t < samples.count; ++t) {
-    const Track& track = known.tracks[t];
+    const Track& track = estimates_now.tracks[t];
     PoseSample& sample = samples.items[t];
     sample = PoseSample{};
     sample.tick = now.tick;
@@ -57,7 +58,7 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
     sample.reason = track.reason;
     sample.registration = robot.value().state;
     sample.registration_rms_m = robot.value().rms_m;
-    if (!track.alive || track.doubted) {
+    if (!track.alive || track.unconfirmed) {
       sample.state = track.reason == Reason::no_frame_yet ? TrackState::none : TrackState::lost;
       continue;
     }
@@ -89,8 +90,8 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
     sample.frame = track.base;
     if (track.base == ReferenceFrame::camera) {
       if (sample.reason == Reason::none) sample.reason = Reason::head_pose_missing;
-    } else if (is_placed(robot.value(), known)) {
-      const Pose placed = T_world_robot(robot.value(), known);
+    } else if (has_robot_pose(robot.value(), estimates_now)) {
+      const Pose placed = T_world_robot(robot.value(), estimates_now);
       systematic +=
           moved_covariance(settings.robot_covariance, moving.pose.translation - placed.translation);
       express(placed.inverse(), moving, covariance, systematic);
@@ -99,7 +100,7 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
       sample.reason = Reason::no_reference;
     }
 
-    const TipPlace& tip = known.tips[static_cast<std::size_t>(t)];
+    const TipPosition& tip = estimates_now.tips[static_cast<std::size_t>(t)];
     const Vector3 arm = moving.pose.rotation * tip.arm_m;
     systematic = tip.systematic_of(systematic, moving.pose.rotation);
     covariance = moved_covariance(covariance, arm) + systematic;

@@ -22,17 +22,17 @@ void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
   }
 }
 
-// While only parts of the frame are searched, the whole frame is tried every k_whole_again frames:
-// the cause of the excess runs may be gone.
-constexpr std::uint32_t k_whole_again = 16;
+// While only parts of the frame are searched, the whole frame is tried every k_whole_frame_period
+// frames: the cause of the excess runs may be gone.
+constexpr std::uint32_t k_whole_frame_period = 16;
 
 // Variance of the change of a first-order Gauss-Markov process within a time, relative to its
 // stationary variance.
-double moved_share(double seconds, double correlation_s) {
+double relative_change_variance(double seconds, double correlation_s) {
   return correlation_s > 0 ? 2 * (1 - exponential(-seconds / correlation_s)) : 2.0;
 }
 
-bool speed_is_known(const MotionState& motion, double sigma_m_s) {
+bool speed_is_estimated(const MotionState& motion, double sigma_m_s) {
   for (int axis = k_velocity; axis < k_velocity + 3; ++axis) {
     if (!(motion.covariance(axis, axis) <= sigma_m_s * sigma_m_s)) return false;
   }
@@ -42,56 +42,60 @@ bool speed_is_known(const MotionState& motion, double sigma_m_s) {
 }  // namespace
 
 // T_camera_world is null without a head pose.
-PredictTracks::Foretold PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
-                                                const HeadAnchor& anchor,
-                                                const Pose* T_camera_world,
-                                                Prediction& prediction) noexcept {
+PredictTracks::PredictedMotion PredictTracks::predict_track(const Track& track, const Tool& tool,
+                                                            Time time,
+                                                            const HeadDriftCorrection& anchor,
+                                                            const Pose* T_camera_world,
+                                                            Prediction& prediction) noexcept {
   const bool in_world = track.base == ReferenceFrame::world;
   prediction.has_prior = true;
-  prediction.missed_last = !track.seen_now;
+  prediction.undetected_last = !track.measured_now;
   prediction.follows_motion = !in_world || T_camera_world != nullptr;
   if (!prediction.follows_motion) {
     prediction.T_camera_tool = track.T_camera_tool;  // kept at its last pose in the camera frame
     return {};
   }
   ++counts_[2];
-  prediction.only_near = speed_is_known(track.motion, settings.known_speed_m_s);
+  prediction.within_reach_only = speed_is_estimated(track.motion, settings.speed_sigma_max_m_s);
   const UncertainPose later = predict_pose(track.motion, time, settings.motion, track.noise);
   const bool goes_on = time - track.motion.time <= settings.horizon;
   Pose middle = goes_on ? later.pose : track.motion.pose;
-  prediction.covariance = track.surprise * later.covariance;
+  prediction.covariance = track.nis_ratio * later.covariance;
   prediction.odds = track.odds;
-  Foretold foretold;
-  foretold.held_back_m = (later.pose.translation - middle.translation).norm();
+  PredictedMotion predicted_motion;
+  predicted_motion.hold_distance_m = (later.pose.translation - middle.translation).norm();
   if (in_world) {
     const double since_s = (time - track.newest.time).seconds();
-    const Matrix6 of_head = moved_share(since_s, settings.head_correlation_s) *
-                            anchor.uncorrected_at(middle.translation);
-    foretold.head_sigma_m = std::sqrt(largest_variance(of_head.topLeftCorner<3, 3>()));
+    const Matrix6 of_head = relative_change_variance(since_s, settings.head_correlation_s) *
+                            anchor.uncorrected_covariance_at(middle.translation);
+    predicted_motion.head_sigma_m = std::sqrt(largest_variance(of_head.topLeftCorner<3, 3>()));
     prediction.covariance += of_head;
-    prediction.covariance = turned_covariance(prediction.covariance, T_camera_world->rotation);
+    prediction.covariance = rotated_covariance(prediction.covariance, T_camera_world->rotation);
     middle = *T_camera_world * middle;
   }
   prediction.T_camera_tool = {middle.rotation, middle * (-tool.middle_m())};
-  return foretold;
+  return predicted_motion;
 }
 
 // Bounded by the motion of a hand in the world and of the world relative to the headset.
 double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, int markers,
-                               double seconds, const Foretold& foretold) const noexcept {
+                               double seconds,
+                               const PredictedMotion& predicted_motion) const noexcept {
   const double half_jerk = 0.5 * settings.acceleration_max_m_s2;
-  const double widest = settings.margin_m + settings.speed_max_m_s * seconds +
-                        half_jerk * seconds * seconds + k_reach_sigmas * foretold.head_sigma_m;
-  if (!prediction.follows_motion) return widest;
+  const double reach_max = settings.margin_m + settings.speed_max_m_s * seconds +
+                           half_jerk * seconds * seconds +
+                           k_reach_sigmas * predicted_motion.head_sigma_m;
+  if (!prediction.follows_motion) return reach_max;
   double variance = 0;
   const Vector3 middle = tool.middle_m();
   for (int m = 0; m < markers; ++m) {
     const Vector3 lever = tool.markers_m[static_cast<std::size_t>(m)] - middle;
-    variance = std::max(variance, largest_variance(prediction.place_covariance(lever)));
+    variance = std::max(variance, largest_variance(prediction.marker_position_covariance(lever)));
   }
   const double start_s = std::min(seconds, settings.start_max.seconds());
-  const double least = settings.floor_m + half_jerk * start_s * start_s;
-  return std::clamp(foretold.held_back_m + k_reach_sigmas * std::sqrt(variance), least, widest);
+  const double reach_min = settings.reach_min_m + half_jerk * start_s * start_s;
+  return std::clamp(predicted_motion.hold_distance_m + k_reach_sigmas * std::sqrt(variance),
+                    reach_min, reach_max);
 }
 
 void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
@@ -102,7 +106,7 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
   // Uses the previous frame's drift correction: this frame's depends on tools not yet detected.
   const Pose T_camera_world = anchor.value().state.corrected(head.T_world_camera).inverse();
   predictions.marker_count = 0;
-  predictions.turn = verdict.accepted;
+  predictions.frame_number = verdict.accepted;
   predictions.noise = last.value().noise;
   counts_ = {{1}};
   int lens_steps = 0, searched_everywhere = 0, cut_short = 0;
@@ -123,10 +127,10 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
 
     ++counts_[1];
     const Tool& tool = set.items[t];
-    const Foretold foretold = foretell(track, tool, now, anchor.value().state,
-                                       head.valid ? &T_camera_world : nullptr, prediction);
+    const PredictedMotion predicted_motion = predict_track(
+        track, tool, now, anchor.value().state, head.valid ? &T_camera_world : nullptr, prediction);
     const int markers = markers_within(tool, limits);
-    prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds(), foretold);
+    prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds(), predicted_motion);
     counts_[3] += markers;
     prediction.in_view = true;
     prediction.low_px = Vector2::Constant(1e9);
@@ -139,10 +143,11 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
       predictions.markers_px[predictions.marker_count++] = pixel.value;
       include(camera, tool, point, pixel.value, prediction);
     }
-    searched_everywhere -= present && prediction.in_view && !prediction.missed_last ? 1 : 0;
+    searched_everywhere -= present && prediction.in_view && !prediction.undetected_last ? 1 : 0;
   }
-  predictions.everywhere = searched_everywhere > 0;
-  predictions.narrowed = cut_short > 0 && predictions.turn % k_whole_again != 0;
+  predictions.search_whole_frame = searched_everywhere > 0;
+  predictions.search_part_of_frame =
+      cut_short > 0 && predictions.frame_number % k_whole_frame_period != 0;
   counts_[4] = lens_steps;
 }
 

@@ -37,7 +37,7 @@ struct ReachSettings {
   MotionSettings motion;            // as used by the motion filter
   double head_correlation_s = 0.4;  // of the headset's localisation error while it moves
   // Three sigma of a marker's range error.
-  double floor_m = 0.0045;
+  double reach_min_m = 0.0045;
   // A static hand may start to move: half of this acceleration times the gap squared. 30 m/s^2 is a
   // brisk wrist movement (TUM-VI room1 peaks below it). The time is bounded by start_max: a longer
   // motion is visible to the filter.
@@ -46,7 +46,7 @@ struct ReachSettings {
   // Up to this standard deviation a speed counts as estimated; the initial one is twice as large. A
   // tool detected once may be faster than any hand: it is searched in the whole frame until it is
   // detected again.
-  double known_speed_m_s = 0.25;
+  double speed_sigma_max_m_s = 0.25;
   // Upper bound of the reach, whatever the covariance: no hand is faster or farther than this.
   double margin_m = 0.015;
   double speed_max_m_s = 1.0;
@@ -70,15 +70,16 @@ struct PredictTracks {
                   Predictions& predictions) noexcept GLINT_NONBLOCKING;
 
  private:
-  struct Foretold {
-    double held_back_m = 0;   // distance from the extrapolated to the held position
-    double head_sigma_m = 0;  // of the tool's position by the headset's error, an axis
+  struct PredictedMotion {
+    double hold_distance_m = 0;  // distance from the extrapolated to the held position
+    double head_sigma_m = 0;     // of the tool's position by the headset's error, an axis
   };
-  Foretold foretell(const Track& track, const Tool& tool, Time time, const HeadAnchor& anchor,
-                    const Pose* T_camera_world, Prediction& prediction) noexcept GLINT_NONBLOCKING;
-  [[nodiscard]] double reach_of(const Prediction& prediction, const Tool& tool, int markers,
-                                double seconds,
-                                const Foretold& foretold) const noexcept GLINT_NONBLOCKING;
+  PredictedMotion predict_track(const Track& track, const Tool& tool, Time time,
+                                const HeadDriftCorrection& anchor, const Pose* T_camera_world,
+                                Prediction& prediction) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] double reach_of(
+      const Prediction& prediction, const Tool& tool, int markers, double seconds,
+      const PredictedMotion& predicted_motion) const noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;
 };

@@ -19,7 +19,7 @@
 namespace glint {
 
 // Markers at their predicted positions: three are enough.
-inline constexpr int k_predicted_left_least = 3;
+inline constexpr int k_predicted_markers_min = 3;
 
 // If the fit fails the chi-square test with all markers and with any single marker removed, its
 // covariance is scaled by the reduced chi-square (Birge 1932), at most by 16. Above that the result
@@ -33,11 +33,11 @@ struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    return worst(limits, {0, k_tool_slices});
+    return worst(limits, {0, k_tool_partitions});
   }
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
-                                                         graph::Slice slice) noexcept {
-    const std::int64_t tools = tools_of(limits, slice);
+                                                         graph::Partition partition) noexcept {
+    const std::int64_t tools = tools_of(limits, partition);
     const RefineWork work = work_max(limits.markers_per_tool);
     return {{1, tools, tools * work.fits, tools * work.steps, tools * work.marker_steps}};
   }
@@ -51,7 +51,7 @@ struct RefinePose {
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Predictions& predictions,
-                  const Assignment& assignment, graph::Slice slice,
+                  const Assignment& assignment, graph::Partition partition,
                   FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
@@ -62,17 +62,17 @@ struct RefinePose {
   // The markers may be fitted once more near the prediction, for the filter. Residuals are computed
   // for the chosen pose.
   [[nodiscard]] static constexpr RefineWork work_max(int markers) noexcept {
-    constexpr RefineSettings k_most = {.markers_left_least = k_predicted_left_least};
-    RefineWork work = refine_work_max(markers, k_most);
-    work += {1, k_most.steps_max, k_most.steps_max * markers};
-    work += refine_work_max(markers, {.left_out_max = 0});  // the alternative labeling's fit
+    constexpr RefineSettings k_defaults = {.markers_kept_min = k_predicted_markers_min};
+    RefineWork work = refine_work_max(markers, k_defaults);
+    work += {1, k_defaults.steps_max, k_defaults.steps_max * markers};
+    work += refine_work_max(markers, {.rejected_max = 0});  // the alternative labeling's fit
     constexpr int k_more = k_residual_steps + k_systematic_steps;
     work += {0, k_more, k_more * markers};
     return work;
   }
   void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
-           const Labeling& rival, const Prediction& prediction, const MarkerNoise& now,
-           double doubt, FittedTool& out) noexcept GLINT_NONBLOCKING;
+           const Labeling& alternative, const Prediction& prediction, const MarkerNoise& now,
+           double variance_factor, FittedTool& out) noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;
 };

@@ -24,8 +24,9 @@
 namespace glint {
 
 // Number of partitions of the tools; independent of the number of workers.
-inline constexpr int k_tool_slices = 4;
-inline constexpr int k_tools_per_slice = (k_tools_max + k_tool_slices - 1) / k_tool_slices;
+inline constexpr int k_tool_partitions = 4;
+inline constexpr int k_tools_per_partition =
+    (k_tools_max + k_tool_partitions - 1) / k_tool_partitions;
 
 // Metadata of a frame, without its pixels.
 struct FrameStamp {
@@ -39,7 +40,7 @@ struct FrameStamp {
 // Result of frame validation for this activation, with the counters of rejected frames.
 struct FrameVerdict {
   FrameStamp stamp;
-  Reason reason = Reason::none;  // frame_late, frame_doubled, frame_invalid
+  Reason reason = Reason::none;  // frame_late, frame_duplicate, frame_invalid
   bool resynchronised = false;   // the time stamps restarted: earlier tracks are invalid
   std::uint64_t accepted = 0;    // counters since the start
   std::uint64_t late = 0, doubled = 0, invalid = 0, resynchronisations = 0;
@@ -49,24 +50,25 @@ struct FrameVerdict {
 // Predicted pose of a tool at this frame's mid-exposure.
 struct Prediction {
   bool has_prior = false;
-  bool missed_last = false;  // the last frame did not detect it: search the whole frame
+  bool undetected_last = false;  // the last frame did not detect it: search the whole frame
   Pose T_camera_tool;
   double reach_m = 0;  // search radius of the tool's markers about the prediction
   // True if the prediction comes from the filtered motion. Only then does `covariance` hold: of the
   // centroid of the tool's markers, about the camera's axes. Otherwise the tool keeps its last pose
   // in the camera frame.
   bool follows_motion = false;
-  bool only_near = false;     // the speed is estimated too: no marker of it is beyond reach_m
-  double odds = k_odds_most;  // of that motion against the next likeliest (expected_pose.hpp)
+  bool within_reach_only = false;  // the speed is estimated too: no marker of it is beyond reach_m
+  double odds = k_odds_max;        // of that motion against the next likeliest (expected_pose.hpp)
   Matrix6 covariance = Matrix6::Zero();
   // Bounding box of the markers in the image, each dilated by that reach. Invalid where a marker
   // has no pixel.
   bool in_view = false;
   Vector2 low_px = Vector2::Zero(), high_px = Vector2::Zero();
 
-  // Position covariance of a marker at `from_middle_m` from the marker centroid, in the tool frame.
-  [[nodiscard]] Matrix3 place_covariance(const Vector3& from_middle_m) const {
-    const Eigen::Matrix<double, 3, 6> j = point_by_pose(T_camera_tool.rotation * from_middle_m);
+  // Position covariance of a marker at `from_centroid_m` from the marker centroid, in the tool
+  // frame.
+  [[nodiscard]] Matrix3 marker_position_covariance(const Vector3& from_centroid_m) const {
+    const Eigen::Matrix<double, 3, 6> j = point_by_pose(T_camera_tool.rotation * from_centroid_m);
     return j * covariance * j.transpose();
   }
 };
@@ -74,11 +76,11 @@ struct Predictions {
   std::array<Prediction, k_tools_max> tools;
   std::array<Vector2, k_tools_max * k_markers_per_tool_max> markers_px;
   int marker_count = 0;
-  bool everywhere = false;  // a tool may be anywhere: the whole frame is searched
+  bool search_whole_frame = false;  // a tool may be anywhere: the whole frame is searched
   // The whole frame exceeded the run budget: search one part of it, a different part each frame.
-  bool narrowed = false;
-  std::uint32_t turn = 0;  // number of the accepted frame
-  NoiseEstimate noise;     // of the markers, estimated from earlier frames
+  bool search_part_of_frame = false;
+  std::uint32_t frame_number = 0;  // number of the accepted frame
+  NoiseEstimate noise;             // of the markers, estimated from earlier frames
 };
 
 struct ToolLabelings {
@@ -90,13 +92,13 @@ struct Assignment {
   std::array<Labeling, k_tools_max> labeling;
   // The alternative labeling: the next one of equally many markers with a distinctly different
   // pose. count 0: none exists.
-  std::array<Labeling, k_tools_max> rival;
+  std::array<Labeling, k_tools_max> alternative;
   std::array<Reason, k_tools_max> reason{};  // none: labeling holds
 };
 
 // For each tool without a labeling: the one or two visible markers that can belong to no other.
 struct SeenFew {
-  std::array<FewMarkers, k_tools_max> tools;
+  std::array<PartialMarkers, k_tools_max> tools;
 };
 
 // Pose of a tool fitted to this frame's markers.
@@ -107,15 +109,15 @@ struct FittedTool {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();  // random part: of the tip, about the camera's axes
   SystematicCovariance systematic;       // of the marker centroid, about the camera's axes
-  double odds = k_odds_most;  // against the likeliest distinct pose hypothesis (expected_pose.hpp)
-  bool turned = false;        // it contradicts the tracked motion, which is then restarted
-  bool by_rival = false;      // its labeling is the assignment's alternative labeling
-  [[nodiscard]] bool ambiguous() const { return odds < k_odds_least; }
-  // Measurement relinearised at the prediction, for the filter only (agreed_pose.hpp): never
+  double odds = k_odds_max;  // against the likeliest distinct pose hypothesis (expected_pose.hpp)
+  bool contradicts_track = false;  // it contradicts the tracked motion, which is then restarted
+  bool by_alternative = false;     // its labeling is the assignment's alternative labeling
+  [[nodiscard]] bool ambiguous() const { return odds < k_odds_min; }
+  // Measurement relinearised at the prediction, for the filter only (map_pose.hpp): never
   // published as a pose.
-  bool tells_near = false;
-  Pose near_T_camera_tool;
-  Matrix6 near_covariance = Matrix6::Zero();  // of the marker centroid
+  bool has_relinearised = false;
+  Pose relinearised_T_camera_tool;
+  Matrix6 relinearised_covariance = Matrix6::Zero();  // of the marker centroid
   MarkerResiduals residuals;
 };
 struct FittedTools {
@@ -123,12 +125,13 @@ struct FittedTools {
 };
 [[nodiscard]] inline const Labeling& labeling_of(const Assignment& assignment,
                                                  const FittedTool& fitted, std::size_t tool) {
-  return fitted.by_rival ? assignment.rival[tool] : assignment.labeling[tool];
+  return fitted.by_alternative ? assignment.alternative[tool] : assignment.labeling[tool];
 }
 
 // Pose of the centroid of a tool's markers in the camera frame, with its covariance about the
 // camera's axes. At the centroid, translation and rotation are nearly uncorrelated.
-[[nodiscard]] inline UncertainPose middle_of(const FittedTool& found, const Tool& tool, Time time) {
+[[nodiscard]] inline UncertainPose centroid_pose_of(const FittedTool& found, const Tool& tool,
+                                                    Time time) {
   const Pose& seen = found.T_camera_tool;
   const Vector3 middle = tool.middle_m();
   return {time,
@@ -136,40 +139,40 @@ struct FittedTools {
           moved_covariance(found.covariance, seen.rotation * (middle - tool.tip_m))};
 }
 // The same pose as input to the motion filter: the relinearised measurement where there is one.
-[[nodiscard]] inline UncertainPose told_middle_of(const FittedTool& found, const Tool& tool,
-                                                  Time time) {
-  if (!found.tells_near) return middle_of(found, tool, time);
-  const Pose& near = found.near_T_camera_tool;
-  return {time, {near.rotation, near * tool.middle_m()}, found.near_covariance};
+[[nodiscard]] inline UncertainPose filter_measurement_of(const FittedTool& found, const Tool& tool,
+                                                         Time time) {
+  if (!found.has_relinearised) return centroid_pose_of(found, tool, time);
+  const Pose& near = found.relinearised_T_camera_tool;
+  return {time, {near.rotation, near * tool.middle_m()}, found.relinearised_covariance};
 }
 
 // Head pose of this frame after drift correction by the reference body, and the state for the next
 // frame.
 struct Anchor {
   std::uint32_t body = 0;  // identity of the reference tool
-  HeadAnchor state;
-  AnchoredHead now;
+  HeadDriftCorrection state;
+  CorrectedHead now;
   Pose T_world_reference;  // of the reference tool's own frame; valid once state.known()
 };
 
 // Motion state of a tool after this frame, of the centroid of its markers.
-struct FollowedTool {
+struct TrackedTool {
   Reason reason = Reason::no_frame_yet;  // why this frame did not update it
   MotionTrack motion;
   MotionState estimate;                             // motion's estimate, once it exists
   NoiseScale noise;                                 // motion's
   Matrix6 correlated_covariance = Matrix6::Zero();  // to be added to estimate's covariance
   ReferenceFrame base = ReferenceFrame::camera;
-  std::uint32_t identity = 0;  // of the tool it belongs to
-  std::uint8_t few_mask = 0;   // the one or two markers that updated it without a pose; 0: none
-  bool stands = false;         // the pose is precise enough to be published as measured
-  bool ambiguous = false;      // an alternative is nearly as likely
-  bool filtered = false;       // publish the filter's pose: the markers alone are too imprecise
-  bool in_use = false;         // otherwise default-constructed
+  std::uint32_t identity = 0;     // of the tool it belongs to
+  std::uint8_t partial_mask = 0;  // the one or two markers that updated it without a pose; 0: none
+  bool is_publishable = false;    // the pose is precise enough to be published as measured
+  bool ambiguous = false;         // an alternative is nearly as likely
+  bool use_filter_pose = false;   // publish the filter's pose: the markers alone are too imprecise
+  bool in_use = false;            // otherwise default-constructed
 };
-// One partition: tool t has index t / k_tool_slices.
+// One partition: tool t has index t / k_tool_partitions.
 struct FollowedTools {
-  std::array<FollowedTool, k_tools_per_slice> items;
+  std::array<TrackedTool, k_tools_per_partition> items;
 };
 
 // Track of a tool after a frame: its newest pose and the one before, which together define the
@@ -177,24 +180,25 @@ struct FollowedTools {
 // newest pose may come from one or two visible markers, if it is precise enough (FollowMotion).
 // Then marker_mask holds only these, and `reason` states why there are no more.
 struct Track {
-  bool alive = false;         // a pose younger than lost_after exists
-  bool filtered = false;      // `newest` is the filter's pose: the markers alone are too imprecise
-  bool doubted = false;       // not yet both unambiguous and precise: not published
-  bool seen_now = false;      // this frame gave a measured pose of at least three markers
+  bool alive = false;  // a pose younger than lost_after exists
+  bool is_filter_pose =
+      false;                  // `newest` is the filter's pose: the markers alone are too imprecise
+  bool unconfirmed = false;   // not yet both unambiguous and precise: not published
+  bool measured_now = false;  // this frame gave a measured pose of at least three markers
   bool has_previous = false;  // `previous` is in the same base and recent enough
   Reason reason = Reason::no_frame_yet;  // why this frame gave no measured pose
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
   std::uint64_t frame_sequence = 0;
-  Duration stamp_sigma;          // standard deviation of newest.time, as stated by the frame
-  std::uint32_t identity = 0;    // of the tool it belongs to
-  double rms_m = 0;              // of the newest pose fitted to at least three markers
-  StampedPose newest, previous;  // T_base_tool
-  Pose T_camera_tool;            // the newest pose in the camera frame
+  Duration stamp_sigma;        // standard deviation of newest.time, as stated by the frame
+  std::uint32_t identity = 0;  // of the tool it belongs to
+  double rms_m = 0;            // of the newest pose fitted to at least three markers
+  TimedPose newest, previous;  // T_base_tool
+  Pose T_camera_tool;          // the newest pose in the camera frame
   MotionState motion;  // T_base_middle (marker centroid), derivatives; at newest.time or later
   NoiseScale noise;    // process noise scale of the motion filter
-  double odds = k_odds_most;  // of that motion against the next likeliest (expected_pose.hpp)
-  double surprise = 1;        // NIS of the newest measurement over its dimension, at least 1
+  double odds = k_odds_max;  // of that motion against the next likeliest (expected_pose.hpp)
+  double nis_ratio = 1;      // NIS of the newest measurement over its dimension, at least 1
   // Covariances to be added to motion's, about the same point and axes: of the headset's
   // localisation error, of the calibration errors, and of the correlated errors.
   Matrix6 head_covariance = Matrix6::Zero();
@@ -203,19 +207,20 @@ struct Track {
 };
 
 // Position of a tool's tip relative to the centroid of its markers.
-struct TipPlace {
+struct TipPosition {
   Vector3 arm_m = Vector3::Zero();  // from the marker centroid, in the tool frame
   double sigma_m = 0;               // standard deviation, an axis
 
-  // Systematic covariance of the tip from that of the marker centroid. `turn` rotates the tool's
-  // axes to the covariance's axes.
-  [[nodiscard]] Matrix6 systematic_of(const Matrix6& of_middle, const Quaternion& turn) const {
-    Matrix6 covariance = moved_covariance(of_middle, turn * arm_m);
+  // Systematic covariance of the tip from that of the marker centroid. `axes_rotation` rotates the
+  // tool's axes to the covariance's axes.
+  [[nodiscard]] Matrix6 systematic_of(const Matrix6& of_middle,
+                                      const Quaternion& axes_rotation) const {
+    Matrix6 covariance = moved_covariance(of_middle, axes_rotation * arm_m);
     covariance.diagonal().head<3>().array() += sigma_m * sigma_m;
     return covariance;
   }
 };
-[[nodiscard]] inline TipPlace tip_of(const Tool& tool) {
+[[nodiscard]] inline TipPosition tip_of(const Tool& tool) {
   return {tool.tip_m - tool.middle_m(), tool.tip_sigma_m};
 }
 
@@ -223,8 +228,8 @@ struct TipPlace {
 struct Estimates {
   FrameVerdict verdict;
   int tool_count = 0;
-  std::array<TipPlace, k_tools_max> tips;  // so that the tick group needs no tool set
-  bool reference_known = false;
+  std::array<TipPosition, k_tools_max> tips;  // so that the tick group needs no tool set
+  bool has_reference = false;
   Pose T_world_reference;  // pose of the reference tool
   NoiseEstimate noise;     // of the markers
   std::array<Track, k_tools_max> tracks;

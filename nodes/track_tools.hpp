@@ -34,8 +34,8 @@ struct TrackTools {
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Anchor& anchor,
                   const graph::Latest<ToolSet>& tools,
-                  const graph::Parts<FittedTools, k_tool_slices>& fitted,
-                  const graph::Parts<FollowedTools, k_tool_slices>& followed,
+                  const graph::Parts<FittedTools, k_tool_partitions>& fitted,
+                  const graph::Parts<FollowedTools, k_tool_partitions>& followed,
                   const graph::Previous<Estimates>& last,
                   Estimates& estimates) noexcept GLINT_NONBLOCKING;
 
@@ -48,6 +48,6 @@ static_assert(graph::Budgeted<TrackTools, Limits>);
 // Covariance of a frame's published pose (the fit's or the filter's), systematic part included: of
 // the tip, about the camera's axes.
 [[nodiscard]] Matrix6 tip_covariance(const Track& track, const FittedTool& found,
-                                     const TipPlace& tip) noexcept;
+                                     const TipPosition& tip) noexcept;
 
 }  // namespace glint

@@ -26,17 +26,17 @@ namespace glint {
 using Tracker = graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSet>>,
                              graph::Outputs<Estimates>, StampFrame, CheckFrame, PredictTracks,
                              LocateRois, graph::Split<RoiThreshold, k_row_bands>, FindBlobs,
-                             BackProject, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
-                             NameFew, graph::Split<RefinePose, k_tool_slices>, AnchorHead,
-                             graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
+                             BackProject, graph::Split<Correspond, k_tool_partitions>,
+                             AssignMarkers, NameFew, graph::Split<RefinePose, k_tool_partitions>,
+                             AnchorHead, graph::Split<FollowMotion, k_tool_partitions>, TrackTools>;
 static_assert(graph::valid<Tracker>);
 
 using MarkerTracker =
     graph::Graph<graph::Inputs<FrameStamp, Markers, HeadPose, graph::Latest<ToolSet>>,
                  graph::Outputs<Estimates>, CheckFrame, PredictTracks,
-                 graph::Split<Correspond, k_tool_slices>, AssignMarkers, NameFew,
-                 graph::Split<RefinePose, k_tool_slices>, AnchorHead,
-                 graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
+                 graph::Split<Correspond, k_tool_partitions>, AssignMarkers, NameFew,
+                 graph::Split<RefinePose, k_tool_partitions>, AnchorHead,
+                 graph::Split<FollowMotion, k_tool_partitions>, TrackTools>;
 static_assert(graph::valid<MarkerTracker>);
 
 }  // namespace glint

@@ -21,12 +21,12 @@
 namespace glint {
 
 // Innermost subcommand of the command line: its full name and its CLI11 object.
-struct GivenCommand {
+struct SelectedCommand {
   std::string path;
   const CLI::App* app;
 };
-[[nodiscard]] inline GivenCommand given_command(const CLI::App& app, const char* program) {
-  GivenCommand given{program, &app};
+[[nodiscard]] inline SelectedCommand selected_command(const CLI::App& app, const char* program) {
+  SelectedCommand given{program, &app};
   while (!given.app->get_subcommands().empty()) {
     given.app = given.app->get_subcommands().front();
     given.path += " " + given.app->get_name();
@@ -61,7 +61,7 @@ struct GivenCommand {
 // Call before any file is opened. Opens closed standard streams on /dev/null; else the first file
 // opened would get such a stream's descriptor and receive the printed table. Ignores SIGXFSZ, so
 // that a write beyond the file size limit returns an error.
-inline void guard_files() {
+inline void prepare_file_descriptors() {
   for (int stream = 0; stream <= 2; ++stream) {
     if (fcntl(stream, F_GETFD) != -1) continue;
     const int null = open("/dev/null", stream == 0 ? O_RDONLY : O_WRONLY);
@@ -80,7 +80,7 @@ template <class Body>
     std::fprintf(stderr, "%s: %s\n", program, one_line(error.what()).c_str());
     return code;
   };
-  guard_files();
+  prepare_file_descriptors();
   try {
     const int code = body();
     // Fails if the output is incomplete, as on a full disk.
@@ -90,7 +90,7 @@ template <class Body>
   } catch (const CLI::ParseError& error) {
     // A request for help is success; any other parse error is bad use, whatever CLI11's code.
     if (error.get_exit_code() == 0) return app.exit(error);
-    const GivenCommand given = given_command(app, program);
+    const SelectedCommand given = selected_command(app, program);
     std::string wrong = unknown_word_text(app, *given.app);
     if (wrong.empty()) wrong = error.what();
     std::fprintf(stderr, "%s: %s; see %s --help\n", given.path.c_str(), one_line(wrong).c_str(),

@@ -37,7 +37,7 @@ struct PartFile {
 }
 
 // Whether the path is a device, a pipe or a descriptor: a rename would replace it by a file.
-[[nodiscard]] inline bool is_written_in_place(const std::string& path) {
+[[nodiscard]] inline bool is_special_file(const std::string& path) {
   if (path.starts_with("/dev/") || path.starts_with("/proc/")) return true;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -56,8 +56,9 @@ struct PartFile {
 }
 
 // Writes the whole file or nothing. Returns the system's error text, or "" on success.
-[[nodiscard]] inline std::string write_whole_file(const std::string& path, std::string_view text) {
-  const bool in_place = is_written_in_place(path);
+[[nodiscard]] inline std::string write_file_atomically(const std::string& path,
+                                                       std::string_view text) {
+  const bool in_place = is_special_file(path);
   const PartFile file =
       in_place ? PartFile{path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC)} : open_part_file(path);
   if (file.descriptor < 0) return std::generic_category().message(errno);

@@ -23,54 +23,54 @@ namespace glint {
     if ((byte(i) & 0xC0) != 0x80) return 0;
     character = character << 6 | (byte(i) & 0x3Fu);
   }
-  constexpr char32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+  constexpr char32_t code_point_min[] = {0, 0, 0x80, 0x800, 0x10000};
   const bool surrogate = character >= 0xD800 && character <= 0xDFFF;
-  return character < least[size] || character > 0x10FFFF || surrogate ? 0 : size;
+  return character < code_point_min[size] || character > 0x10FFFF || surrogate ? 0 : size;
 }
 
 // Whether a terminal shows the character as a glyph or a blank, without reordering the text.
 [[nodiscard]] inline bool is_printable(char32_t c) {
   const auto within = [c](char32_t low, char32_t high) { return c >= low && c <= high; };
   const bool control = c < 0x20 || within(0x7F, 0x9F);
-  const bool invisible_or_turning = c == 0x61C || within(0x200B, 0x200F) ||
-                                    within(0x2028, 0x202E) || within(0x2060, 0x206F) ||
-                                    c == 0xFEFF || within(0xFFF9, 0xFFFB);
-  return !control && !invisible_or_turning;
+  const bool invisible_or_bidi_control = c == 0x61C || within(0x200B, 0x200F) ||
+                                         within(0x2028, 0x202E) || within(0x2060, 0x206F) ||
+                                         c == 0xFEFF || within(0xFFF9, 0xFFFB);
+  return !control && !invisible_or_bidi_control;
 }
 
 // Returns one line: '?' replaces each character that is_printable rejects and each byte that is not
 // valid UTF-8.
-[[nodiscard]] inline std::string printable(std::string_view foreign) {
+[[nodiscard]] inline std::string printable(std::string_view untrusted) {
   std::string clean;
-  clean.reserve(foreign.size());
-  while (!foreign.empty()) {
+  clean.reserve(untrusted.size());
+  while (!untrusted.empty()) {
     char32_t character = 0;
-    const std::size_t size = utf8_character(foreign, character);
+    const std::size_t size = utf8_character(untrusted, character);
     if (size == 0 || !is_printable(character)) {
       clean += '?';
     } else {
-      clean += foreign.substr(0, size);
+      clean += untrusted.substr(0, size);
     }
-    foreign.remove_prefix(size == 0 ? 1 : size);
+    untrusted.remove_prefix(size == 0 ? 1 : size);
   }
   return clean;
 }
 
 // printable() per line, for a table: keeps line feeds.
-[[nodiscard]] inline std::string printable_lines(std::string_view foreign) {
+[[nodiscard]] inline std::string printable_lines(std::string_view untrusted) {
   std::string clean;
-  for (std::size_t end = 0; (end = foreign.find('\n')) != std::string_view::npos;) {
-    clean += printable(foreign.substr(0, end)) + '\n';
-    foreign.remove_prefix(end + 1);
+  for (std::size_t end = 0; (end = untrusted.find('\n')) != std::string_view::npos;) {
+    clean += printable(untrusted.substr(0, end)) + '\n';
+    untrusted.remove_prefix(end + 1);
   }
-  return clean + printable(foreign);
+  return clean + printable(untrusted);
 }
 
 // printable_lines(), escaped for HTML, XML or SVG, between tags or in a double-quoted attribute.
 // Line feeds are kept; they render as blanks.
-[[nodiscard]] inline std::string printable_markup(std::string_view foreign) {
+[[nodiscard]] inline std::string printable_markup(std::string_view untrusted) {
   std::string text;
-  for (const char c : printable_lines(foreign)) {
+  for (const char c : printable_lines(untrusted)) {
     switch (c) {
       case '&':
         text += "&amp;";

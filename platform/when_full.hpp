@@ -5,7 +5,7 @@
 
 namespace glint {
 
-enum class WhenFull : std::uint8_t {
+enum class OverflowPolicy : std::uint8_t {
   drop,  // and count: a real-time run must not wait
   wait,  // the caller sleeps until there is room: a run outside real time loses nothing
 };

@@ -15,11 +15,11 @@ std::string in_us(std::int64_t ns) {
 }
 
 // Adds a line if a bound is missing or exceeds its deadline.
-void judge(std::vector<std::string>& fails, const std::string& name,
-           const std::optional<std::int64_t>& found, std::int64_t deadline) {
+void check_deadline(std::vector<std::string>& missed_deadlines, const std::string& name,
+                    const std::optional<std::int64_t>& found, std::int64_t deadline) {
   if (found && *found <= deadline) return;
-  fails.push_back(name + ": bound " + (found ? in_us(*found) : "none") + ", deadline " +
-                  in_us(deadline));
+  missed_deadlines.push_back(name + ": bound " + (found ? in_us(*found) : "none") + ", deadline " +
+                             in_us(deadline));
 }
 
 SharedResponse shared(const TaskModel& model, const TaskGroup& group, const GroupResponse& with,
@@ -40,10 +40,10 @@ bool bounded(const std::vector<GroupResponse>& groups) {
 }
 
 // Adds the slowest own pose frame: worst-case time from queueing to last bit, and its minimum.
-void add_bus(const Question& question, const Assessment& found, std::int64_t jitter_ns,
+void add_bus(const AnalysisInput& input, const Assessment& found, std::int64_t jitter_ns,
              ChainParts& parts) {
-  for (std::size_t f = 0; f < question.frames.size(); ++f) {
-    const CanMessage& frame = question.frames[f];
+  for (std::size_t f = 0; f < input.frames.size(); ++f) {
+    const CanMessage& frame = input.frames[f];
     const bool carries_a_pose =
         frame.node == k_own_can_node && frame.period_ns == parts.tick_gap_ns;
     if (!carries_a_pose || !found.can[f].response_ns) continue;
@@ -51,52 +51,54 @@ void add_bus(const Question& question, const Assessment& found, std::int64_t jit
     if (parts.bus_ns && from_queueing <= *parts.bus_ns) continue;
     parts.bus_ns = from_queueing;
     // At most every fifth bit is a stuff bit.
-    parts.bus_least_ns = found.can[f].frame_ns * 4 / 5;
+    parts.bus_min_ns = found.can[f].frame_ns * 4 / 5;
   }
 }
 
 }  // namespace
 
-Assessment assess(const Question& question) {
+Assessment assess(const AnalysisInput& input) {
   Assessment found;
-  const TaskModel& model = question.model;
-  found.groups = group_responses(model, question.plan);
+  const TaskModel& model = input.model;
+  found.groups = group_responses(model, input.plan);
   for (const GroupResponse& group : found.groups) {
-    judge(found.fails, "group " + group.name, group.response_ns, group.deadline_ns);
+    check_deadline(found.missed_deadlines, "group " + group.name, group.response_ns,
+                   group.deadline_ns);
   }
-  found.can.resize(question.frames.size());
+  found.can.resize(input.frames.size());
   if (!bounded(found.groups)) return found;
 
   TaskModel alone = model;
   alone.system = {};
-  const std::vector<GroupResponse> without = group_responses(alone, question.plan);
+  const std::vector<GroupResponse> without = group_responses(alone, input.plan);
 
   // What a tick sends may be queued at any time until the tick is done.
   const std::int64_t jitter_ns = *found.groups[k_tick].response_ns;
-  std::vector<CanMessage> frames = question.frames;
+  std::vector<CanMessage> frames = input.frames;
   for (CanMessage& frame : frames) {
     if (frame.node == k_own_can_node) frame.jitter_ns += jitter_ns;
   }
-  found.can = can_responses(frames, question.rates);
+  found.can = can_responses(frames, input.rates);
   for (std::size_t f = 0; f < frames.size(); ++f) {
-    judge(found.fails, "CAN frame " + frames[f].name, found.can[f].response_ns,
-          frames[f].deadline_ns);
+    check_deadline(found.missed_deadlines, "CAN frame " + frames[f].name, found.can[f].response_ns,
+                   frames[f].deadline_ns);
   }
 
   ChainParts parts;
-  parts.sensor = question.sensor;
+  parts.sensor = input.sensor;
   parts.arrival_jitter_ns = model.groups[k_frame].jitter_ns;
   parts.frame_gap_ns = model.groups[k_frame].min_gap_ns;
   parts.tick_gap_ns = model.groups[k_tick].min_gap_ns;
   parts.frame = shared(model, model.groups[k_frame], found.groups[k_frame], without[k_frame]);
   parts.tick = shared(model, model.groups[k_tick], found.groups[k_tick], without[k_tick]);
   parts.first_write_ns = model.system.can_write_ns * std::min(1, model.groups[k_tick].can_writes);
-  parts.frame_to_can_deadline_ns = question.frame_to_can_deadline_ns;
-  parts.age_deadline_ns = question.age_deadline_ns;
-  add_bus(question, found, jitter_ns, parts);
+  parts.frame_to_can_deadline_ns = input.frame_to_can_deadline_ns;
+  parts.age_deadline_ns = input.age_deadline_ns;
+  add_bus(input, found, jitter_ns, parts);
   found.chains = chains_of(parts);
   for (const Chain& chain : found.chains) {
-    judge(found.fails, "chain " + chain.name, chain.total_ns, chain.deadline_ns);
+    check_deadline(found.missed_deadlines, "chain " + chain.name, chain.total_ns,
+                   chain.deadline_ns);
   }
   return found;
 }

@@ -20,7 +20,7 @@ namespace glint {
 
 inline constexpr int k_own_can_node = 0;  // CanMessage::node of Glint's own frames
 
-struct Question {
+struct AnalysisInput {
   TaskModel model;  // groups: frame, tick, then any others
   Plan plan;
   SensorTimes sensor;
@@ -32,12 +32,12 @@ struct Question {
 
 struct Assessment {
   std::vector<GroupResponse> groups;  // with the operating system's share
-  std::vector<CanResponse> can;       // in the order of Question::frames
+  std::vector<CanResponse> can;       // in the order of AnalysisInput::frames
   std::vector<Chain> chains;
-  std::vector<std::string> fails;  // one line per missed deadline, with the values
-  [[nodiscard]] bool holds() const { return fails.empty(); }
+  std::vector<std::string> missed_deadlines;  // one line per missed deadline, with the values
+  [[nodiscard]] bool holds() const { return missed_deadlines.empty(); }
 };
 
-[[nodiscard]] Assessment assess(const Question& question);
+[[nodiscard]] Assessment assess(const AnalysisInput& input);
 
 }  // namespace glint

@@ -22,7 +22,7 @@ class Bus {
         results_(messages.size()) {
     for (std::size_t m = 0; m < messages.size(); ++m) {
       results_[m].frame_ns = frame_ns_of(messages[m], rates);
-      urgency_.push_back(urgency_of(messages[m]));
+      priorities_.push_back(arbitration_priority(messages[m]));
     }
   }
 
@@ -32,9 +32,9 @@ class Bus {
       for (std::size_t m = 0; m < messages_.size(); ++m) {
         const std::int64_t queued_before = results_[m].queued_ns;
         if (messages_[m].fifo) {
-          queued(m);
+          analyse_fifo_queue(m);
         } else {
-          by_priority(m);
+          analyse_priority_queue(m);
         }
         if (!results_[m].response_ns) return unbounded();
         grew = grew || results_[m].queued_ns > queued_before;
@@ -56,44 +56,44 @@ class Bus {
   }
 
   // Frames of a priority of at least `level`, without `but_not` and the frames of its queue.
-  [[nodiscard]] std::vector<Interference> urgent_than(std::uint64_t level, std::size_t but_not,
-                                                      std::int64_t early_ns) const {
-    std::vector<Interference> urgent;
+  [[nodiscard]] std::vector<Interference> higher_priority(std::uint64_t level, std::size_t but_not,
+                                                          std::int64_t early_ns) const {
+    std::vector<Interference> higher;
     for (std::size_t k = 0; k < messages_.size(); ++k) {
       // Two nodes may use the same identifier, against the rules; either may win.
-      if (k == but_not || urgency_[k] < level || same_queue(k, but_not)) continue;
-      urgent.push_back({results_[k].frame_ns, messages_[k].period_ns,
+      if (k == but_not || priorities_[k] < level || same_queue(k, but_not)) continue;
+      higher.push_back({results_[k].frame_ns, messages_[k].period_ns,
                         messages_[k].jitter_ns + results_[k].queued_ns + early_ns});
     }
-    return urgent;
+    return higher;
   }
 
   [[nodiscard]] std::int64_t blocking(std::uint64_t level, std::size_t of) const {
     std::int64_t longest = 0;
     for (std::size_t k = 0; k < messages_.size(); ++k) {
-      if (k == of || urgency_[k] >= level || same_queue(k, of)) continue;
+      if (k == of || priorities_[k] >= level || same_queue(k, of)) continue;
       longest = std::max(longest, results_[k].frame_ns);
     }
     return longest;
   }
 
-  void by_priority(std::size_t m) {
+  void analyse_priority_queue(std::size_t m) {
     const CanMessage& own = messages_[m];
     CanResponse& result = results_[m];
     const std::int64_t frame = result.frame_ns;
-    const std::int64_t block = blocking(urgency_[m], m);
+    const std::int64_t block = blocking(priorities_[m], m);
     // Eq. (10): level-m busy period.
-    std::vector<Interference> all = urgent_than(urgency_[m], m, 0);
+    std::vector<Interference> all = higher_priority(priorities_[m], m, 0);
     all.push_back({frame, own.period_ns, own.jitter_ns});
     const auto busy = busy_window(block, all, k_busy_period_max_ns, frame, steps_left_);
     if (!busy) return result.response_ns.reset();
     const std::int64_t last = detail::ceil_of_quotient(*busy + own.jitter_ns, own.period_ns);
     // Eq. (11): a frame queued up to one bit time after the bus became idle still takes part.
-    const std::vector<Interference> urgent = urgent_than(urgency_[m], m, bit_ns_);
+    const std::vector<Interference> higher = higher_priority(priorities_[m], m, bit_ns_);
     std::int64_t window = 0, worst = 0;
     for (std::int64_t q = 0; q < last; ++q) {
       const auto begin =
-          busy_window(block + q * frame, urgent, k_busy_period_max_ns, window, steps_left_);
+          busy_window(block + q * frame, higher, k_busy_period_max_ns, window, steps_left_);
       if (!begin) return result.response_ns.reset();
       window = *begin;
       worst = std::max(worst, own.jitter_ns + window - q * own.period_ns + frame);
@@ -101,18 +101,18 @@ class Bus {
     result.response_ns = worst;
   }
 
-  void queued(std::size_t m) {
+  void analyse_fifo_queue(std::size_t m) {
     CanResponse& result = results_[m];
-    std::uint64_t level = urgency_[m];
+    std::uint64_t level = priorities_[m];
     std::vector<std::size_t> queue;
     for (std::size_t k = 0; k < messages_.size(); ++k) {
       if (!same_queue(k, m)) continue;
       queue.push_back(k);
-      level = std::min(level, urgency_[k]);
+      level = std::min(level, priorities_[k]);
     }
     const std::int64_t block = blocking(level, m);
-    const std::vector<Interference> urgent = urgent_than(level, m, bit_ns_);
-    std::vector<Interference> all = urgent_than(level, m, 0);
+    const std::vector<Interference> higher = higher_priority(level, m, bit_ns_);
+    std::vector<Interference> all = higher_priority(level, m, 0);
     for (const std::size_t k : queue) {
       all.push_back({results_[k].frame_ns, messages_[k].period_ns, messages_[k].jitter_ns});
     }
@@ -126,7 +126,7 @@ class Bus {
         const std::int64_t came = (arrival + messages_[k].jitter_ns) / messages_[k].period_ns + 1;
         ahead += came * results_[k].frame_ns;
       }
-      const auto begin = busy_window(block + ahead - result.frame_ns, urgent, k_busy_period_max_ns,
+      const auto begin = busy_window(block + ahead - result.frame_ns, higher, k_busy_period_max_ns,
                                      0, steps_left_);
       if (!begin) return result.response_ns.reset();
       waited = std::max(waited, *begin - arrival);
@@ -154,13 +154,13 @@ class Bus {
   const std::vector<CanMessage>& messages_;
   std::int64_t bit_ns_;
   std::vector<CanResponse> results_;
-  std::vector<std::uint64_t> urgency_;
+  std::vector<std::uint64_t> priorities_;
   int steps_left_ = k_can_steps_max;
 };
 
 }  // namespace
 
-std::uint64_t urgency_of(const CanMessage& message) {
+std::uint64_t arbitration_priority(const CanMessage& message) {
   constexpr std::uint32_t k_low_bits = 18;
   const bool extended = message.shape.extended;
   const std::uint64_t base = extended ? message.identifier >> k_low_bits : message.identifier;

@@ -52,7 +52,7 @@ inline constexpr int k_can_rounds_max = 100;       // until the queueing delays 
 
 // Arbitration priority; larger wins (ISO 11898-1: the first 11 bits, then a short identifier before
 // a long one, then the rest).
-[[nodiscard]] std::uint64_t urgency_of(const CanMessage& message);
+[[nodiscard]] std::uint64_t arbitration_priority(const CanMessage& message);
 
 // In the order of `messages`.
 [[nodiscard]] std::vector<CanResponse> can_responses(const std::vector<CanMessage>& messages,

@@ -41,7 +41,7 @@ class DualSimplexTable {
     for (pivots = 0; pivots < problem_.pivots_max; ++pivots) {
       find_multipliers();
       const bool stalled = stalls > problem_.stalls_max;
-      const std::int64_t entering = stalled ? first_improving() : most_improving();
+      const std::int64_t entering = stalled ? first_improving() : best_improving();
       if (entering < 0) return EnvelopeFault::none;
       const Row direction = times_inverse(column(entering));
       const int leaving = row_that_blocks(direction);
@@ -97,7 +97,7 @@ class DualSimplexTable {
     return sum;
   }
   [[nodiscard]] std::int64_t columns() const { return slack(loops()); }
-  [[nodiscard]] std::int64_t most_improving() const {
+  [[nodiscard]] std::int64_t best_improving() const {
     std::int64_t best = -1;
     double most = k_tolerance;
     for (std::int64_t i = 0; i < columns(); ++i) {
@@ -178,9 +178,9 @@ LoopWeights balanced_weights(std::span<const ObservedCall> calls,
     }
   }
   for (const ProblemSize& size : sizes) {
-    if (!(size.dearest > 0)) continue;
+    if (!(size.cost_max > 0)) continue;
     for (std::size_t j = 0; j < k_rows; ++j) {
-      weights[j] += static_cast<double>(size.maximum[j]) / size.dearest;
+      weights[j] += static_cast<double>(size.maximum[j]) / size.cost_max;
     }
   }
   return weights;
@@ -208,21 +208,21 @@ Envelope fit_envelope(const EnvelopeProblem& problem) {
   }
   double lift = 1;
   for (const ObservedCall& call : problem.calls) {
-    const double said = cost_of(envelope, call.counts);
-    if (said < call.cost && said > 0) lift = std::max(lift, call.cost / said);
+    const double bound = cost_of(envelope, call.counts);
+    if (bound < call.cost && bound > 0) lift = std::max(lift, call.cost / bound);
   }
   for (double& cost : envelope.cost) cost *= lift * (1 + problem.margin);
   return envelope;
 }
 
-EnvelopeJudgement judge(const Envelope& envelope, std::span<const ObservedCall> calls) {
-  EnvelopeJudgement result;
+EnvelopeValidation validate(const Envelope& envelope, std::span<const ObservedCall> calls) {
+  EnvelopeValidation result;
   result.calls = static_cast<std::int64_t>(calls.size());
   for (const ObservedCall& call : calls) {
-    const double said = cost_of(envelope, call.counts);
-    if (call.cost <= said) continue;
+    const double bound = cost_of(envelope, call.counts);
+    if (call.cost <= bound) continue;
     ++result.above;
-    const double excess = said > 0 ? (call.cost / said - 1) * 100 : 100;
+    const double excess = bound > 0 ? (call.cost / bound - 1) * 100 : 100;
     result.worst_excess_percent = std::max(result.worst_excess_percent, excess);
   }
   return result;

@@ -33,7 +33,7 @@ using LoopWeights = std::array<double, graph::k_loops_max>;
 // A problem size: its maximum loop counts, and its most expensive observed call.
 struct ProblemSize {
   graph::LoopCounts maximum;
-  double dearest = 0;
+  double cost_max = 0;
 };
 
 // Weights that minimise the ratio of the bound to the most expensive call, equally at each size, so
@@ -66,12 +66,12 @@ struct Envelope {
 [[nodiscard]] double cost_of(const Envelope& envelope, const graph::LoopCounts& counts);
 
 // Validation of an envelope: number of calls above it, and the largest excess.
-struct EnvelopeJudgement {
+struct EnvelopeValidation {
   std::int64_t calls = 0;
   std::int64_t above = 0;
   double worst_excess_percent = 0;  // relative to the envelope; 0: no call is above
 };
-[[nodiscard]] EnvelopeJudgement judge(const Envelope& envelope,
-                                      std::span<const ObservedCall> calls);
+[[nodiscard]] EnvelopeValidation validate(const Envelope& envelope,
+                                          std::span<const ObservedCall> calls);
 
 }  // namespace glint

@@ -11,29 +11,29 @@ namespace {
 
 class Search {
  public:
-  Search(const TaskGroup& group, int cores, std::int64_t handover_ns)
+  Search(const TaskGroup& group, int cores, std::int64_t inter_core_delay_ns)
       : group_(group),
         cores_(cores),
-        handover_(handover_ns),
-        tail_(tails_of(group, reach_of(group), cores, handover_ns)),
-        twin_(group.nodes.size(), -1),
+        inter_core_delay_(inter_core_delay_ns),
+        tail_(tails_of(group, reach_of(group), cores, inter_core_delay_ns)),
+        interchangeable_before_(group.nodes.size(), -1),
         core_of_(group.nodes.size(), -1),
         end_(group.nodes.size(), 0),
         earliest_(group.nodes.size(), 0),
         free_at_(static_cast<std::size_t>(cores), 0),
         orders_(static_cast<std::size_t>(cores)) {
-    find_twins();
+    find_interchangeable();
     for (const TaskNode& node : group.nodes) work_left_ += node.bound_ns;
   }
 
-  [[nodiscard]] std::int64_t least() const {
-    std::int64_t least = (work_left_ + cores_ - 1) / cores_;
-    for (const std::int64_t tail : tail_) least = std::max(least, tail);
-    return least;
+  [[nodiscard]] std::int64_t lower_bound() const {
+    std::int64_t bound = (work_left_ + cores_ - 1) / cores_;
+    for (const std::int64_t tail : tail_) bound = std::max(bound, tail);
+    return bound;
   }
 
-  void offer(const CoreOrders& orders) {
-    const std::int64_t makespan = times_of(group_, orders, handover_)->makespan_ns;
+  void propose(const CoreOrders& orders) {
+    const std::int64_t makespan = times_of(group_, orders, inter_core_delay_)->makespan_ns;
     if (best_.orders.empty() || makespan < best_.makespan_ns) {
       best_.orders = orders;
       best_.orders.resize(static_cast<std::size_t>(cores_));
@@ -43,18 +43,19 @@ class Search {
 
   ExactSchedule run(std::int64_t nodes_max) {
     nodes_max_ = nodes_max;
-    best_.least_possible_ns = least();
-    if (best_.makespan_ns > best_.least_possible_ns) extend(0, 0, 0);
+    best_.makespan_lower_bound_ns = lower_bound();
+    if (best_.makespan_ns > best_.makespan_lower_bound_ns) extend(0, 0, 0);
     // Below the limit every sequence was searched or pruned.
-    best_.optimal = best_.searched < nodes_max_ || best_.makespan_ns == best_.least_possible_ns;
-    if (best_.optimal) best_.least_possible_ns = best_.makespan_ns;
+    best_.optimal =
+        best_.searched < nodes_max_ || best_.makespan_ns == best_.makespan_lower_bound_ns;
+    if (best_.optimal) best_.makespan_lower_bound_ns = best_.makespan_ns;
     return best_;
   }
 
  private:
   // Interchangeable copies (equal bound, predecessors and readers): only one order is searched.
-  // twin_[n] must be placed before n.
-  void find_twins() {
+  // interchangeable_before_[n] must be placed before n.
+  void find_interchangeable() {
     const std::size_t count = group_.nodes.size();
     const auto readers = [&](std::size_t n) {
       std::vector<std::size_t> found;
@@ -67,13 +68,13 @@ class Search {
       return found;
     };
     for (std::size_t n = 0; n < count; ++n) {
-      for (std::size_t other = n; other-- > 0 && twin_[n] < 0;) {
+      for (std::size_t other = n; other-- > 0 && interchangeable_before_[n] < 0;) {
         if (group_.nodes[n].bound_ns != group_.nodes[other].bound_ns) continue;
         auto own_after = group_.nodes[n].after, other_after = group_.nodes[other].after;
         std::sort(own_after.begin(), own_after.end());
         std::sort(other_after.begin(), other_after.end());
         if (own_after == other_after && readers(n) == readers(other)) {
-          twin_[n] = static_cast<int>(other);
+          interchangeable_before_[n] = static_cast<int>(other);
         }
       }
     }
@@ -81,7 +82,9 @@ class Search {
 
   [[nodiscard]] bool ready(std::size_t n) const {
     if (core_of_[n] >= 0) return false;
-    if (twin_[n] >= 0 && core_of_[static_cast<std::size_t>(twin_[n])] < 0) return false;
+    if (interchangeable_before_[n] >= 0 &&
+        core_of_[static_cast<std::size_t>(interchangeable_before_[n])] < 0)
+      return false;
     return std::all_of(group_.nodes[n].after.begin(), group_.nodes[n].after.end(),
                        [&](int b) { return core_of_[static_cast<std::size_t>(b)] >= 0; });
   }
@@ -90,7 +93,8 @@ class Search {
     std::int64_t start = free_at_[core];
     for (const int before : group_.nodes[n].after) {
       const auto b = static_cast<std::size_t>(before);
-      start = std::max(start, end_[b] + (core_of_[b] == static_cast<int>(core) ? 0 : handover_));
+      start = std::max(start,
+                       end_[b] + (core_of_[b] == static_cast<int>(core) ? 0 : inter_core_delay_));
     }
     return start;
   }
@@ -117,7 +121,7 @@ class Search {
   }
 
   void extend(std::size_t placed, std::int64_t last_start, std::int64_t longest_end) {
-    if (best_.searched >= nodes_max_ || best_.makespan_ns == best_.least_possible_ns) return;
+    if (best_.searched >= nodes_max_ || best_.makespan_ns == best_.makespan_lower_bound_ns) return;
     ++best_.searched;
     if (placed == group_.nodes.size()) {
       if (longest_end < best_.makespan_ns) {
@@ -164,9 +168,9 @@ class Search {
 
   const TaskGroup& group_;
   int cores_;
-  std::int64_t handover_, nodes_max_ = 0;
+  std::int64_t inter_core_delay_, nodes_max_ = 0;
   std::vector<std::int64_t> tail_;
-  std::vector<int> twin_, core_of_;
+  std::vector<int> interchangeable_before_, core_of_;
   std::vector<std::int64_t> end_, earliest_, free_at_;
   CoreOrders orders_;
   std::int64_t work_left_ = 0;
@@ -175,15 +179,16 @@ class Search {
 
 }  // namespace
 
-std::int64_t least_makespan(const TaskGroup& group, int cores, std::int64_t handover_ns) {
-  return Search(group, cores, handover_ns).least();
+std::int64_t makespan_lower_bound(const TaskGroup& group, int cores,
+                                  std::int64_t inter_core_delay_ns) {
+  return Search(group, cores, inter_core_delay_ns).lower_bound();
 }
 
-ExactSchedule exact_schedule(const TaskGroup& group, int cores, std::int64_t handover_ns,
+ExactSchedule exact_schedule(const TaskGroup& group, int cores, std::int64_t inter_core_delay_ns,
                              std::int64_t search_nodes_max) {
-  Search search(group, cores, handover_ns);
-  search.offer(list_schedule(group, cores, handover_ns));
-  search.offer(list_schedule(group, 1, handover_ns));
+  Search search(group, cores, inter_core_delay_ns);
+  search.propose(list_schedule(group, cores, inter_core_delay_ns));
+  search.propose(list_schedule(group, 1, inter_core_delay_ns));
   return search.run(search_nodes_max);
 }
 

@@ -28,17 +28,17 @@ inline constexpr std::int64_t k_search_nodes_max = 2'000'000;
 struct ExactSchedule {
   CoreOrders orders;
   std::int64_t makespan_ns = 0;
-  std::int64_t least_possible_ns = 0;  // lower bound of every schedule's makespan
+  std::int64_t makespan_lower_bound_ns = 0;  // lower bound of every schedule's makespan
   bool optimal = false;
   std::int64_t searched = 0;
 };
 
 [[nodiscard]] ExactSchedule exact_schedule(const TaskGroup& group, int cores,
-                                           std::int64_t handover_ns,
+                                           std::int64_t inter_core_delay_ns,
                                            std::int64_t search_nodes_max = k_search_nodes_max);
 
 // Lower bound on the makespan of any schedule.
-[[nodiscard]] std::int64_t least_makespan(const TaskGroup& group, int cores,
-                                          std::int64_t handover_ns);
+[[nodiscard]] std::int64_t makespan_lower_bound(const TaskGroup& group, int cores,
+                                                std::int64_t inter_core_delay_ns);
 
 }  // namespace glint

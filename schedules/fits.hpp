@@ -5,7 +5,7 @@
 //     static constexpr std::int64_t deadline_ns = 22'222'222;
 //     static constexpr std::int64_t gap_ns = 22'222'222;  // between releases, at least
 //   };
-//   static_assert(fits<board::k_table, Limits{}, TickChain, FrameChain>);
+//   static_assert(meets_deadlines<board::k_table, Limits{}, TickChain, FrameChain>);
 //
 // What:     chains on one core, in order of decreasing priority. Each runs its nodes in the graph's
 //           order, at their bounds, and is preempted by the chains before it. A missed deadline is
@@ -59,14 +59,14 @@ struct ChainEnd {
 
 template <std::size_t n>
 [[nodiscard]] consteval ChainEnd chain_end(const std::array<std::int64_t, n>& bounds,
-                                           std::span<const Interference> urgent,
+                                           std::span<const Interference> higher,
                                            std::int64_t deadline_ns) {
   ChainEnd end;
   std::int64_t base = 0;
   for (std::size_t node = 0; node < n; ++node) {
     base += bounds[node];
     int steps = k_response_steps_max;
-    const auto window = busy_window(base, urgent, k_busy_period_max_ns, base, steps);
+    const auto window = busy_window(base, higher, k_busy_period_max_ns, base, steps);
     const std::int64_t response = window ? *window : k_busy_period_max_ns;
     if (response <= deadline_ns) continue;
     if (end.late_node < 0) end.late_node = static_cast<int>(node);
@@ -93,13 +93,13 @@ template <const CostTable& table, Limits limits, class G>
 }
 
 // One chain, preempted by all chains before it in the list.
-template <const CostTable& table, Limits limits, class Chain, class... Urgent>
-[[nodiscard]] consteval bool check_chain(graph::TypeList<Urgent...> /*urgent*/) {
+template <const CostTable& table, Limits limits, class Chain, class... Higher>
+[[nodiscard]] consteval bool check_chain(graph::TypeList<Higher...> /*higher*/) {
   using G = typename Chain::Graph;
   (void)check_costs<table, typename G::Wires>(std::make_integer_sequence<int, G::unit_count>{});
-  constexpr std::array<Interference, sizeof...(Urgent)> urgent = {
-      Interference{sum_of_bounds<table, limits, typename Urgent::Graph>(), Urgent::gap_ns, 0}...};
-  constexpr ChainEnd end = chain_end(node_bounds<G>(table, limits), urgent, Chain::deadline_ns);
+  constexpr std::array<Interference, sizeof...(Higher)> higher = {
+      Interference{sum_of_bounds<table, limits, typename Higher::Graph>(), Higher::gap_ns, 0}...};
+  constexpr ChainEnd end = chain_end(node_bounds<G>(table, limits), higher, Chain::deadline_ns);
   if constexpr (end.late_node >= 0) {
     (void)sizeof(ChainMissesDeadline<Chain, NodeAt<typename G::Wires, end.late_node>,
                                      end.overshoot_ns, false>);
@@ -124,7 +124,7 @@ template <const CostTable& table, Limits limits, class... Before, class Chain, c
 }  // namespace detail
 
 template <const CostTable& table, Limits limits, class... Chain>
-inline constexpr bool fits = detail::check_chains<table, limits>(graph::TypeList<>{},
-                                                                 graph::TypeList<Chain...>{});
+inline constexpr bool meets_deadlines =
+    detail::check_chains<table, limits>(graph::TypeList<>{}, graph::TypeList<Chain...>{});
 
 }  // namespace glint

@@ -35,7 +35,7 @@ struct GroupResponse {
   std::int64_t jitter_ns = 0;
   std::int64_t deadline_ns = 0;
 
-  [[nodiscard]] bool in_time() const { return response_ns && *response_ns <= deadline_ns; }
+  [[nodiscard]] bool meets_deadline() const { return response_ns && *response_ns <= deadline_ns; }
 };
 
 // In the order of the model's groups. Uses the plan's orders and priorities, the model's bounds and

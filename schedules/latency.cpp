@@ -27,10 +27,10 @@ void add_groups(Chain& chain, const ChainParts& parts, std::int64_t writes_ns) {
   add(chain, "CAN write", StageKind::estimate, writes_ns);
 }
 
-void finish(Chain& chain, const ChainParts& parts, std::int64_t least_ns) {
+void finish(Chain& chain, const ChainParts& parts, std::int64_t total_min_ns) {
   chain.maximum_reaction_time_ns = chain.total_ns + parts.frame_gap_ns;
   chain.maximum_data_age_ns = chain.total_ns - parts.tick_gap_ns + parts.frame_gap_ns;
-  chain.jitter_ns = chain.total_ns - least_ns;
+  chain.jitter_ns = chain.total_ns - total_min_ns;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::vector<Chain> chains_of(const ChainParts& parts) {
   add_groups(to_bus, parts, parts.tick.writes_ns);
   add(to_bus, "CAN: queue and bus", StageKind::bound, *parts.bus_ns);
   finish(to_bus, parts,
-         parts.sensor.exposure_ns / 2 + parts.sensor.transport_ns + parts.bus_least_ns);
+         parts.sensor.exposure_ns / 2 + parts.sensor.transport_ns + parts.bus_min_ns);
   return {to_can, to_bus};
 }
 

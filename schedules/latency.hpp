@@ -70,7 +70,7 @@ struct ChainParts {
   SharedResponse frame, tick;
   std::int64_t first_write_ns = 0;     // of the tick's writes
   std::optional<std::int64_t> bus_ns;  // worst case of a pose frame from its queueing
-  std::int64_t bus_least_ns = 0;       // that frame without stuff bits on an idle bus
+  std::int64_t bus_min_ns = 0;         // that frame without stuff bits on an idle bus
   std::int64_t frame_to_can_deadline_ns = 0;
   std::int64_t age_deadline_ns = 0;  // largest useful age of an estimate
 };

@@ -17,7 +17,7 @@ std::vector<std::int64_t> levels_of(const TaskGroup& group) {
   return level;
 }
 
-CoreOrders list_schedule(const TaskGroup& group, int cores, std::int64_t handover_ns) {
+CoreOrders list_schedule(const TaskGroup& group, int cores, std::int64_t inter_core_delay_ns) {
   const std::size_t count = group.nodes.size();
   const std::vector<std::int64_t> level = levels_of(group);
   CoreOrders orders(static_cast<std::size_t>(cores));
@@ -33,7 +33,8 @@ CoreOrders list_schedule(const TaskGroup& group, int cores, std::int64_t handove
     std::int64_t start = free_at[core];
     for (const int before : group.nodes[n].after) {
       const auto b = static_cast<std::size_t>(before);
-      start = std::max(start, end[b] + (core_of[b] == static_cast<int>(core) ? 0 : handover_ns));
+      start = std::max(start,
+                       end[b] + (core_of[b] == static_cast<int>(core) ? 0 : inter_core_delay_ns));
     }
     return start;
   };

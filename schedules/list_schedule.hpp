@@ -22,6 +22,7 @@ using CoreOrders = std::vector<std::vector<int>>;  // per core: node indices in 
 // Longest path of bounds from each node's start to the group's end, the node included.
 [[nodiscard]] std::vector<std::int64_t> levels_of(const TaskGroup& group);
 
-[[nodiscard]] CoreOrders list_schedule(const TaskGroup& group, int cores, std::int64_t handover_ns);
+[[nodiscard]] CoreOrders list_schedule(const TaskGroup& group, int cores,
+                                       std::int64_t inter_core_delay_ns);
 
 }  // namespace glint

@@ -20,17 +20,17 @@ Reach reach_of(const TaskGroup& group) {
   return reach;
 }
 
-std::int64_t least_between(std::int64_t work_ns, int cores, std::int64_t handover_ns) {
+std::int64_t time_between_min(std::int64_t work_ns, int cores, std::int64_t inter_core_delay_ns) {
   std::int64_t least = work_ns;
   for (std::int64_t used = 2; used <= cores; ++used) {
-    const std::int64_t sum = work_ns + 2 * handover_ns * (used - 1);
+    const std::int64_t sum = work_ns + 2 * inter_core_delay_ns * (used - 1);
     least = std::min(least, (sum + used - 1) / used);
   }
   return least;
 }
 
 std::vector<std::int64_t> tails_of(const TaskGroup& group, const Reach& reach, int cores,
-                                   std::int64_t handover_ns) {
+                                   std::int64_t inter_core_delay_ns) {
   const std::size_t count = group.nodes.size();
   std::vector<std::int64_t> tail(count, 0);
   for (std::size_t u = count; u-- > 0;) {
@@ -41,7 +41,7 @@ std::vector<std::int64_t> tails_of(const TaskGroup& group, const Reach& reach, i
       for (std::size_t x = u + 1; x < v; ++x) {
         if (reach[u][x] && reach[x][v]) between += group.nodes[x].bound_ns;
       }
-      after = std::max(after, least_between(between, cores, handover_ns) + tail[v]);
+      after = std::max(after, time_between_min(between, cores, inter_core_delay_ns) + tail[v]);
       work_after += group.nodes[v].bound_ns;
     }
     // All successors of u run after it, and no data is sent back at the end.

@@ -14,10 +14,11 @@ using Reach = std::vector<std::vector<bool>>;
 
 // Minimum time between u's end and v's start for the work between them: `work_ns` on up to `cores`
 // cores, all but one of which lose two inter-core delays.
-[[nodiscard]] std::int64_t least_between(std::int64_t work_ns, int cores, std::int64_t handover_ns);
+[[nodiscard]] std::int64_t time_between_min(std::int64_t work_ns, int cores,
+                                            std::int64_t inter_core_delay_ns);
 
 // Per node, itself included. At least the longest path.
 [[nodiscard]] std::vector<std::int64_t> tails_of(const TaskGroup& group, const Reach& reach,
-                                                 int cores, std::int64_t handover_ns);
+                                                 int cores, std::int64_t inter_core_delay_ns);
 
 }  // namespace glint

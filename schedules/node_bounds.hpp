@@ -43,11 +43,12 @@ template <class... G>
 }
 
 // Maximum loop counts of one copy of a node. Nodes with different copies define worst(limits,
-// slice).
+// partition).
 template <class Node>
-[[nodiscard]] constexpr graph::LoopCounts worst_of(const Limits& limits, graph::Slice slice) {
-  if constexpr (requires { Node::worst(limits, slice); }) {
-    return Node::worst(limits, slice);
+[[nodiscard]] constexpr graph::LoopCounts worst_of(const Limits& limits,
+                                                   graph::Partition partition) {
+  if constexpr (requires { Node::worst(limits, partition); }) {
+    return Node::worst(limits, partition);
   } else {
     return Node::worst(limits);
   }
@@ -56,11 +57,11 @@ template <class Node>
 // WCET bound of one node, or of one copy of a split node, in nanoseconds.
 template <class Node>
 [[nodiscard]] constexpr std::int64_t node_bound(const CostTable& table, const Limits& limits,
-                                                graph::Slice slice = {}) {
+                                                graph::Partition partition = {}) {
   const KernelLoops kernel{graph::type_name<Node>(), Node::k_loops};
   const KernelCost* cost = table.find(kernel.kernel);
   if (cost == nullptr || !costs_of(*cost, kernel)) return k_no_bound;
-  return bound_ns(*cost, worst_of<Node>(limits, slice));
+  return bound_ns(*cost, worst_of<Node>(limits, partition));
 }
 
 // By node index in the order of execution, each copy of a split node separately, as in

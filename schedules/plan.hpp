@@ -24,8 +24,8 @@ struct PlannedGroup {
   std::string name;
   int priority = 0;
   std::int64_t makespan_ns = 0;
-  std::int64_t least_possible_ns = 0;  // a lower bound on any schedule's makespan
-  bool optimal = false;                // makespan_ns is proven to be the optimum
+  std::int64_t makespan_lower_bound_ns = 0;  // a lower bound on any schedule's makespan
+  bool optimal = false;                      // makespan_ns is proven to be the optimum
 };
 
 struct Plan {

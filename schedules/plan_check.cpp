@@ -21,7 +21,7 @@ class Checker {
     }
     check_priorities();
     for (std::size_t g = 0; g < model_.groups.size(); ++g) {
-      if (!check_places(g)) continue;
+      if (!check_allocation(g)) continue;
       check_precedence(g);
       check_overlap(g);
       check_one_core(g);
@@ -65,68 +65,70 @@ class Checker {
   }
 
   // Every node occurs once, on an existing core, with at least its bound as time.
-  bool check_places(std::size_t g) {
-    place_.assign(model_.groups[g].nodes.size(), nullptr);
+  bool check_allocation(std::size_t g) {
+    allocation_.assign(model_.groups[g].nodes.size(), nullptr);
     const std::size_t faults_before = faults_.size();
     for (const PlannedNode& node : plan_.nodes) {
       if (node.group != static_cast<int>(g)) continue;
-      if (node.node < 0 || node.node >= static_cast<int>(place_.size())) {
+      if (node.node < 0 || node.node >= static_cast<int>(allocation_.size())) {
         add(model_.groups[g].name + ": node " + std::to_string(node.node) + "; expected 0 to " +
-            std::to_string(place_.size() - 1));
+            std::to_string(allocation_.size() - 1));
         continue;
       }
       const auto n = static_cast<std::size_t>(node.node);
-      if (place_[n] != nullptr) add(name(g, n) + " stands twice; expected once");
-      place_[n] = &node;
+      if (allocation_[n] != nullptr) add(name(g, n) + " stands twice; expected once");
+      allocation_[n] = &node;
       if (node.core < 0 || node.core >= plan_.cores) {
         add(name(g, n) + ": core " + std::to_string(node.core) + "; expected 0 to " +
             std::to_string(plan_.cores - 1));
       }
-      const std::int64_t given = node.end_ns - node.start_ns;
-      if (node.start_ns < 0 || given < model_.groups[g].nodes[n].bound_ns) {
-        add(name(g, n) + ": is given " + ns(given) + "; expected at least its bound, " +
+      const std::int64_t allotted_ns = node.end_ns - node.start_ns;
+      if (node.start_ns < 0 || allotted_ns < model_.groups[g].nodes[n].bound_ns) {
+        add(name(g, n) + ": is given " + ns(allotted_ns) + "; expected at least its bound, " +
             ns(model_.groups[g].nodes[n].bound_ns));
       }
     }
-    for (std::size_t n = 0; n < place_.size(); ++n) {
-      if (place_[n] == nullptr) add(name(g, n) + " is missing; expected every node once");
+    for (std::size_t n = 0; n < allocation_.size(); ++n) {
+      if (allocation_[n] == nullptr) add(name(g, n) + " is missing; expected every node once");
     }
     return faults_.size() == faults_before;
   }
 
   void check_precedence(std::size_t g) {
-    for (std::size_t n = 0; n < place_.size(); ++n) {
+    for (std::size_t n = 0; n < allocation_.size(); ++n) {
       for (const int before : model_.groups[g].nodes[n].after) {
-        const PlannedNode& from = *place_[static_cast<std::size_t>(before)];
-        const std::int64_t there =
-            from.end_ns + (from.core == place_[n]->core ? 0 : model_.system.core_handover_ns);
-        if (place_[n]->start_ns >= there) continue;
-        add(name(g, n) + ": starts at " + ns(place_[n]->start_ns) + "; expected at least " +
-            ns(there) + ", when the data of " +
+        const PlannedNode& from = *allocation_[static_cast<std::size_t>(before)];
+        const std::int64_t available_ns =
+            from.end_ns +
+            (from.core == allocation_[n]->core ? 0 : model_.system.inter_core_delay_ns);
+        if (allocation_[n]->start_ns >= available_ns) continue;
+        add(name(g, n) + ": starts at " + ns(allocation_[n]->start_ns) + "; expected at least " +
+            ns(available_ns) + ", when the data of " +
             model_.groups[g].nodes[static_cast<std::size_t>(before)].name + " is there");
       }
     }
   }
 
   void check_overlap(std::size_t g) {
-    for (std::size_t a = 0; a < place_.size(); ++a) {
-      for (std::size_t b = a + 1; b < place_.size(); ++b) {
-        if (place_[a]->core != place_[b]->core) continue;
-        if (place_[a]->start_ns >= place_[b]->end_ns || place_[b]->start_ns >= place_[a]->end_ns) {
+    for (std::size_t a = 0; a < allocation_.size(); ++a) {
+      for (std::size_t b = a + 1; b < allocation_.size(); ++b) {
+        if (allocation_[a]->core != allocation_[b]->core) continue;
+        if (allocation_[a]->start_ns >= allocation_[b]->end_ns ||
+            allocation_[b]->start_ns >= allocation_[a]->end_ns) {
           continue;
         }
         add(name(g, a) + " and " + name(g, b) + " overlap on core " +
-            std::to_string(place_[a]->core) + "; expected one after the other");
+            std::to_string(allocation_[a]->core) + "; expected one after the other");
       }
     }
   }
 
   void check_one_core(std::size_t g) {
     if (!model_.groups[g].resumable) return;
-    for (std::size_t n = 1; n < place_.size(); ++n) {
-      if (place_[n]->core == place_[0]->core) continue;
-      add(name(g, n) + ": core " + std::to_string(place_[n]->core) + "; expected " +
-          std::to_string(place_[0]->core) + ", as " + model_.groups[g].nodes[0].name +
+    for (std::size_t n = 1; n < allocation_.size(); ++n) {
+      if (allocation_[n]->core == allocation_[0]->core) continue;
+      add(name(g, n) + ": core " + std::to_string(allocation_[n]->core) + "; expected " +
+          std::to_string(allocation_[0]->core) + ", as " + model_.groups[g].nodes[0].name +
           ": what runs in slices has one thread");
     }
   }
@@ -159,7 +161,7 @@ class Checker {
 
   const Plan& plan_;
   const TaskModel& model_;
-  std::vector<const PlannedNode*> place_;
+  std::vector<const PlannedNode*> allocation_;
   std::vector<std::string> faults_;
 };
 

@@ -50,10 +50,10 @@ namespace detail {
   return a / b + (a % b > 0 ? 1 : 0);
 }
 
-[[nodiscard]] constexpr std::int64_t demand_ns(std::span<const Interference> urgent,
+[[nodiscard]] constexpr std::int64_t demand_ns(std::span<const Interference> higher,
                                                std::int64_t window_ns) {
   std::int64_t sum = 0;
-  for (const Interference& i : urgent) {
+  for (const Interference& i : higher) {
     if (i.cost_ns <= 0) continue;
     // A gap that was not declared counts as 1 ns, so that the cost is never hidden.
     const std::int64_t gap = i.gap_ns > 0 ? i.gap_ns : 1;
@@ -67,11 +67,11 @@ namespace detail {
 // Smallest window that holds `base_ns` and all preemptions within it. The search starts at
 // `from_ns`, a lower bound. Returns nothing beyond `limit_ns` or if the steps are used up.
 [[nodiscard]] constexpr std::optional<std::int64_t> busy_window(
-    std::int64_t base_ns, std::span<const Interference> urgent, std::int64_t limit_ns,
+    std::int64_t base_ns, std::span<const Interference> higher, std::int64_t limit_ns,
     std::int64_t from_ns, int& steps_left) {
   std::int64_t window = from_ns > base_ns ? from_ns : base_ns;
   while (steps_left-- > 0) {
-    const std::int64_t needed = base_ns + detail::demand_ns(urgent, window);
+    const std::int64_t needed = base_ns + detail::demand_ns(higher, window);
     if (needed > limit_ns) return std::nullopt;
     if (needed <= window) return window;
     window = needed;
@@ -81,13 +81,13 @@ namespace detail {
 
 // Returns nothing if no bound was found: the load is too high, or a maximum above was reached.
 [[nodiscard]] constexpr std::optional<ResponseTime> response_time(
-    const WorkUnderAnalysis& work, std::span<const Interference> urgent) {
+    const WorkUnderAnalysis& work, std::span<const Interference> higher) {
   int steps_left = k_response_steps_max;
   ResponseTime worst;
   std::int64_t window = 0;
   for (std::int64_t q = 0; steps_left > 0; ++q) {
     const std::int64_t base = work.blocking_ns + (q + 1) * work.cost_ns;
-    const auto end = busy_window(base, urgent, k_busy_period_max_ns, window, steps_left);
+    const auto end = busy_window(base, higher, k_busy_period_max_ns, window, steps_left);
     if (!end) return std::nullopt;
     window = *end;
     ++worst.activations;

@@ -5,33 +5,34 @@
 namespace glint {
 namespace {
 
-std::int64_t grown(std::int64_t ns, double factor) {
+std::int64_t scaled_up(std::int64_t ns, double factor) {
   return static_cast<std::int64_t>(std::ceil(static_cast<double>(ns) * factor));
 }
 
 }  // namespace
 
-TaskModel scaled(const TaskModel& model, double factor, const Grows& grows, bool system_too) {
+TaskModel scaled(const TaskModel& model, double factor, const IsScaled& is_scaled,
+                 bool system_too) {
   TaskModel result = model;
   for (std::size_t g = 0; g < result.groups.size(); ++g) {
     TaskGroup& group = result.groups[g];
     std::size_t changed = 0;
     for (std::size_t n = 0; n < group.nodes.size(); ++n) {
-      if (!grows(g, n)) continue;
-      group.nodes[n].bound_ns = grown(group.nodes[n].bound_ns, factor);
+      if (!is_scaled(g, n)) continue;
+      group.nodes[n].bound_ns = scaled_up(group.nodes[n].bound_ns, factor);
       ++changed;
     }
     // A slice consists of these nodes: it grows with any of them, and shrinks only with all.
     if (factor > 1 ? changed > 0 : changed == group.nodes.size()) {
-      group.longest_slice_ns = grown(group.longest_slice_ns, factor);
+      group.longest_slice_ns = scaled_up(group.longest_slice_ns, factor);
     }
   }
   if (system_too) {
     SystemShare& system = result.system;
-    system.wake_up_ns = grown(system.wake_up_ns, factor);
-    system.interrupt_ns = grown(system.interrupt_ns, factor);
-    system.can_write_ns = grown(system.can_write_ns, factor);
-    system.core_handover_ns = grown(system.core_handover_ns, factor);
+    system.wake_up_ns = scaled_up(system.wake_up_ns, factor);
+    system.interrupt_ns = scaled_up(system.interrupt_ns, factor);
+    system.can_write_ns = scaled_up(system.can_write_ns, factor);
+    system.inter_core_delay_ns = scaled_up(system.inter_core_delay_ns, factor);
   }
   return result;
 }
@@ -48,12 +49,12 @@ std::optional<double> largest_factor(const std::function<bool(double)>& holds) {
   return good;
 }
 
-std::optional<double> largest_factor(const Question& question, const Grows& grows,
+std::optional<double> largest_factor(const AnalysisInput& input, const IsScaled& is_scaled,
                                      bool system_too) {
-  Question asked = question;
+  AnalysisInput scaled_input = input;
   return largest_factor([&](double factor) {
-    asked.model = scaled(question.model, factor, grows, system_too);
-    return assess(asked).holds();
+    scaled_input.model = scaled(input.model, factor, is_scaled, system_too);
+    return assess(scaled_input).holds();
   });
 }
 

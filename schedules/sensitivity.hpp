@@ -21,17 +21,18 @@ inline constexpr int k_bisection_steps = 48;
 inline constexpr double k_factor_max = 1000;
 
 // Predicate that selects the scaled nodes, by group and node index.
-using Grows = std::function<bool(std::size_t group, std::size_t node)>;
+using IsScaled = std::function<bool(std::size_t group, std::size_t node)>;
 
 // Scales the bounds, rounded up, and the longest slice of a scaled group. `system_too`: also scales
 // the operating system's share, as for a slower clock.
-[[nodiscard]] TaskModel scaled(const TaskModel& model, double factor, const Grows& grows,
+[[nodiscard]] TaskModel scaled(const TaskModel& model, double factor, const IsScaled& is_scaled,
                                bool system_too = false);
 
 // Returns nothing if the deadlines are missed even with a factor of 0.
 [[nodiscard]] std::optional<double> largest_factor(const std::function<bool(double)>& holds);
 
-[[nodiscard]] std::optional<double> largest_factor(const Question& question, const Grows& grows,
+[[nodiscard]] std::optional<double> largest_factor(const AnalysisInput& input,
+                                                   const IsScaled& is_scaled,
                                                    bool system_too = false);
 
 // 38.0: execution times may grow by 38 %.

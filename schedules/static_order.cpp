@@ -6,7 +6,7 @@ namespace glint {
 
 std::optional<OrderTimes> times_of(const TaskGroup& group,
                                    const std::vector<std::vector<int>>& orders,
-                                   std::int64_t handover_ns) {
+                                   std::int64_t inter_core_delay_ns) {
   const std::size_t count = group.nodes.size();
   OrderTimes times{std::vector<std::int64_t>(count), std::vector<std::int64_t>(count),
                    std::vector<int>(count, -1), 0, 0};
@@ -26,7 +26,8 @@ std::optional<OrderTimes> times_of(const TaskGroup& group,
     for (const int before : group.nodes[static_cast<std::size_t>(node)].after) {
       const auto index = static_cast<std::size_t>(before);
       if (!done[index]) return std::nullopt;
-      ready = std::max(ready, times.end_ns[index] + (times.core[index] == core ? 0 : handover_ns));
+      ready = std::max(ready,
+                       times.end_ns[index] + (times.core[index] == core ? 0 : inter_core_delay_ns));
     }
     return ready;
   };

@@ -28,6 +28,6 @@ struct OrderTimes {
 // Returns nothing if the orders and the data dependencies form a cycle.
 [[nodiscard]] std::optional<OrderTimes> times_of(const TaskGroup& group,
                                                  const std::vector<std::vector<int>>& orders,
-                                                 std::int64_t handover_ns);
+                                                 std::int64_t inter_core_delay_ns);
 
 }  // namespace glint

@@ -28,12 +28,12 @@ bool on_one_core(const CoreOrders& orders) {
   return std::count_if(orders.begin(), orders.end(), [](const auto& o) { return !o.empty(); }) <= 1;
 }
 
-Plan plan_of(const TaskModel& model, const Placement& placement) {
+Plan schedule_of(const TaskModel& model, const Placement& placement) {
   Plan plan;
   plan.cores = model.cores;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const TaskGroup& group = model.groups[g];
-    const auto times = times_of(group, placement[g], model.system.core_handover_ns);
+    const auto times = times_of(group, placement[g], model.system.inter_core_delay_ns);
     plan.groups.push_back({group.name, group.priority, times->makespan_ns, 0, false});
     for (std::size_t core = 0; core < placement[g].size(); ++core) {
       for (const int node : placement[g][core]) {
@@ -48,38 +48,41 @@ Plan plan_of(const TaskModel& model, const Placement& placement) {
 
 void assign_priorities(const TaskModel& model, Plan& plan) {
   const std::size_t count = plan.groups.size();
-  std::vector<std::size_t> open;
-  for (std::size_t g = 0; g < count; ++g) open.push_back(g);
-  std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
+  std::vector<std::size_t> unassigned;
+  for (std::size_t g = 0; g < count; ++g) unassigned.push_back(g);
+  std::stable_sort(unassigned.begin(), unassigned.end(), [&](std::size_t a, std::size_t b) {
     const TaskGroup &first = model.groups[a], &second = model.groups[b];
     if (first.resumable != second.resumable) return second.resumable;
     return first.deadline_ns < second.deadline_ns;
   });
   // Groups without a final priority are deadline monotonic.
   const auto number = [&] {
-    for (std::size_t rank = 0; rank < open.size(); ++rank) {
-      plan.groups[open[rank]].priority =
-          k_most_urgent_priority - k_priority_step * static_cast<int>(rank);
+    for (std::size_t rank = 0; rank < unassigned.size(); ++rank) {
+      plan.groups[unassigned[rank]].priority =
+          k_priority_max - k_priority_step * static_cast<int>(rank);
     }
   };
-  while (!open.empty()) {
+  while (!unassigned.empty()) {
     number();
-    const std::vector<std::size_t> by_deadline = open;
-    const int lowest = plan.groups[open.back()].priority;
-    std::size_t chosen = open.size() - 1;
-    for (std::size_t candidate = open.size(); candidate-- > 0;) {
-      if (model.groups[open.back()].resumable != model.groups[open[candidate]].resumable) break;
-      open = by_deadline;
-      std::rotate(open.begin() + static_cast<std::ptrdiff_t>(candidate),
-                  open.begin() + static_cast<std::ptrdiff_t>(candidate) + 1, open.end());
+    const std::vector<std::size_t> by_deadline = unassigned;
+    const int lowest = plan.groups[unassigned.back()].priority;
+    std::size_t chosen = unassigned.size() - 1;
+    for (std::size_t candidate = unassigned.size(); candidate-- > 0;) {
+      if (model.groups[unassigned.back()].resumable !=
+          model.groups[unassigned[candidate]].resumable)
+        break;
+      unassigned = by_deadline;
+      std::rotate(unassigned.begin() + static_cast<std::ptrdiff_t>(candidate),
+                  unassigned.begin() + static_cast<std::ptrdiff_t>(candidate) + 1,
+                  unassigned.end());
       number();
-      if (!group_responses(model, plan)[open.back()].in_time()) continue;
+      if (!group_responses(model, plan)[unassigned.back()].meets_deadline()) continue;
       chosen = candidate;
       break;
     }
-    open = by_deadline;
-    plan.groups[open[chosen]].priority = lowest;
-    open.erase(open.begin() + static_cast<std::ptrdiff_t>(chosen));
+    unassigned = by_deadline;
+    plan.groups[unassigned[chosen]].priority = lowest;
+    unassigned.erase(unassigned.begin() + static_cast<std::ptrdiff_t>(chosen));
   }
 }
 
@@ -105,7 +108,7 @@ Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
     // A resumable group has one thread.
     const int cores = model.groups[g].resumable ? 1 : model.cores;
     found.push_back(
-        exact_schedule(model.groups[g], cores, model.system.core_handover_ns, search_nodes_max));
+        exact_schedule(model.groups[g], cores, model.system.inter_core_delay_ns, search_nodes_max));
     shortest.push_back(first_node_first(found.back().orders));
     shortest.back().resize(static_cast<std::size_t>(model.cores));
     if (g > 0 && on_one_core(shortest.back())) movable.push_back(g);
@@ -119,33 +122,33 @@ Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
   std::vector<double> best_tightness;
   for (std::size_t choice = 0; choice < placements; ++choice) {
     Placement placement = shortest;
-    std::size_t rest = choice;
+    std::size_t remaining = choice;
     for (const std::size_t g : movable) {
       // The last core first: it is kept if no other core is better.
-      const std::size_t core =
-          static_cast<std::size_t>(model.cores) - 1 - rest % static_cast<std::size_t>(model.cores);
+      const std::size_t core = static_cast<std::size_t>(model.cores) - 1 -
+                               remaining % static_cast<std::size_t>(model.cores);
       std::swap(placement[g][0], placement[g][core]);
-      rest /= static_cast<std::size_t>(model.cores);
+      remaining /= static_cast<std::size_t>(model.cores);
     }
-    Plan plan = plan_of(model, placement);
+    Plan plan = schedule_of(model, placement);
     assign_priorities(model, plan);
-    std::vector<double> tight = tightness(model, plan);
-    if (choice > 0 && tight >= best_tightness) continue;
+    std::vector<double> ratios = tightness(model, plan);
+    if (choice > 0 && ratios >= best_tightness) continue;
     best = std::move(plan);
-    best_tightness = std::move(tight);
+    best_tightness = std::move(ratios);
   }
   for (std::size_t g = 0; g < found.size(); ++g) {
-    best.groups[g].least_possible_ns = found[g].least_possible_ns;
+    best.groups[g].makespan_lower_bound_ns = found[g].makespan_lower_bound_ns;
     best.groups[g].optimal = found[g].optimal;
   }
   return best;
 }
 
-Plan retimed(const Plan& plan, const TaskModel& model) {
+Plan with_computed_times(const Plan& plan, const TaskModel& model) {
   Plan result = plan;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const auto times = times_of(model.groups[g], core_orders(plan, static_cast<int>(g)),
-                                model.system.core_handover_ns);
+                                model.system.inter_core_delay_ns);
     result.groups[g].makespan_ns = times->makespan_ns;
     for (PlannedNode& node : result.nodes) {
       if (node.group != static_cast<int>(g)) continue;

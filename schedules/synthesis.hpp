@@ -19,7 +19,7 @@
 namespace glint {
 
 // SCHED_FIFO scale, below the kernel's interrupt threads (50). Ranks are k_priority_step apart.
-inline constexpr int k_most_urgent_priority = 48;
+inline constexpr int k_priority_max = 48;
 inline constexpr int k_priority_step = 3;
 inline constexpr int k_plan_cores_max = 4;
 
@@ -28,6 +28,6 @@ inline constexpr int k_plan_cores_max = 4;
                               std::int64_t search_nodes_max = k_search_nodes_max);
 
 // The same plan with starts, ends and makespans from the model's bounds. Requires feasible orders.
-[[nodiscard]] Plan retimed(const Plan& plan, const TaskModel& model);
+[[nodiscard]] Plan with_computed_times(const Plan& plan, const TaskModel& model);
 
 }  // namespace glint

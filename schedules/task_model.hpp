@@ -33,11 +33,11 @@ struct TaskGroup {
 
 // Overhead of the operating system. An estimate, measured on the board, reported in its own rows.
 struct SystemShare {
-  std::int64_t wake_up_ns = 0;        // release -> first instruction of the group
-  std::int64_t interrupt_ns = 0;      // each timer interrupt on a core ...
-  std::int64_t interrupt_gap_ns = 0;  // ... at least this far apart; 0: none
-  std::int64_t can_write_ns = 0;      // one write of one CAN frame
-  std::int64_t core_handover_ns = 0;  // end of a node -> visible to its reader on another core
+  std::int64_t wake_up_ns = 0;           // release -> first instruction of the group
+  std::int64_t interrupt_ns = 0;         // each timer interrupt on a core ...
+  std::int64_t interrupt_gap_ns = 0;     // ... at least this far apart; 0: none
+  std::int64_t can_write_ns = 0;         // one write of one CAN frame
+  std::int64_t inter_core_delay_ns = 0;  // end of a node -> visible to its reader on another core
 };
 
 struct TaskModel {

@@ -18,7 +18,7 @@
 namespace glint {
 
 // Four consecutive samples with increasing time stamps.
-struct MotionPiece {
+struct MotionSegment {
   double seconds[4] = {};
   Vector3 position_m[4];
   Quaternion rotation[2];  // of the middle two, in one hemisphere
@@ -33,8 +33,8 @@ struct PoseOf {
 // Extrapolates slightly beyond the middle two samples: the derivative by a time offset remains
 // valid there.
 template <class Scalar>
-[[nodiscard]] PoseOf<Scalar> blended_pose(const MotionPiece& piece,
-                                          const Scalar& seconds) noexcept {
+[[nodiscard]] PoseOf<Scalar> interpolated_pose(const MotionSegment& piece,
+                                               const Scalar& seconds) noexcept {
   using std::sqrt;
   const double gap = piece.seconds[2] - piece.seconds[1];
   const Scalar u = (seconds - Scalar(piece.seconds[1])) / Scalar(gap);

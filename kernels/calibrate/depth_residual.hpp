@@ -30,11 +30,11 @@ struct DepthSample {
   Vector3 per_x = Vector3::Zero(), per_y = Vector3::Zero();
   double surface_range_m = 0;  // as reported by the sensor
   double centre_behind_m = 0;  // from the surface to the marker's centre
-  double dimness = 0;          // k_reference_counts / peak; 0: term not used
+  double inverse_signal = 0;   // k_reference_counts / peak; 0: term not used
   double sigma_x_px = 1, sigma_y_px = 1, sigma_range_m = 1;
 };
 
-// bias: offset_m, per_metre, dim_m.
+// bias: offset_m, per_metre, low_signal_m.
 template <class Scalar>
 [[nodiscard]] Vector3Of<Scalar> depth_residual(const DepthSample& sample,
                                                const QuaternionOf<Scalar>& rotation,
@@ -48,7 +48,7 @@ template <class Scalar>
   // measured range on both sides its noise would bias the slope upwards.
   const Scalar surface = sqrt(p.squaredNorm()) - sample.centre_behind_m;
   const Scalar range =
-      (surface + bias[0] - bias[1] * DepthBias::k_reference_m + bias[2] * sample.dimness) /
+      (surface + bias[0] - bias[1] * DepthBias::k_reference_m + bias[2] * sample.inverse_signal) /
       (Scalar(1) - bias[1]);
   return {p.dot(sample.per_x.cast<Scalar>()) / along / sample.sigma_x_px,
           p.dot(sample.per_y.cast<Scalar>()) / along / sample.sigma_y_px,

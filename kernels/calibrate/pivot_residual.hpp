@@ -36,12 +36,12 @@ template <class Scalar>
                                                    const Vector3Of<Scalar>& lever_m,
                                                    const Vector3Of<Scalar>& post_m) noexcept {
   const Vector3Of<Scalar> tip = rotated(rotation, lever_m) + sample.centre_m.cast<Scalar>();
-  const QuaternionOf<Scalar> off = sample.rotation.conjugate().cast<Scalar>() * rotation;
+  const QuaternionOf<Scalar> rotation_error = sample.rotation.conjugate().cast<Scalar>() * rotation;
   // q and -q are the same rotation: uses the nearer one.
-  const Scalar two = off.w() < Scalar(0) ? Scalar(-2) : Scalar(2);
+  const Scalar two = rotation_error.w() < Scalar(0) ? Scalar(-2) : Scalar(2);
   PivotResidual<Scalar> residual;
   residual.position = (tip - post_m) / Scalar(sample.position_sigma_m);
-  residual.rotation = off.vec() * (two / Scalar(sample.rotation_sigma_rad));
+  residual.rotation = rotation_error.vec() * (two / Scalar(sample.rotation_sigma_rad));
   return residual;
 }
 

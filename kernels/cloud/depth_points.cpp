@@ -3,20 +3,20 @@
 namespace glint {
 namespace {
 
-int taken_of(int pixels, int stride) { return (pixels + stride - 1) / stride; }
+int sampled_count(int pixels, int stride) { return (pixels + stride - 1) / stride; }
 
 }  // namespace
 
-int pixels_of(const DepthPicture& picture, int stride) noexcept {
-  return taken_of(picture.width, stride) * taken_of(picture.height, stride);
+int pixels_of(const DepthImageView& picture, int stride) noexcept {
+  return sampled_count(picture.width, stride) * sampled_count(picture.height, stride);
 }
 
-int add_depth_points(const DepthPicture& picture, const CameraModel& camera,
+int add_depth_points(const DepthImageView& picture, const CameraModel& camera,
                      const Pose& T_world_camera, const DepthPointSettings& settings, int from,
-                     int most, PointCloud& points, int& dropped) noexcept {
+                     int count_max, PointCloud& points, int& dropped) noexcept {
   const Matrix3 rotation = T_world_camera.rotation.toRotationMatrix();
-  const int columns = taken_of(picture.width, settings.stride);
-  const int end = std::min(pixels_of(picture, settings.stride), from + std::max(most, 0));
+  const int columns = sampled_count(picture.width, settings.stride);
+  const int end = std::min(pixels_of(picture, settings.stride), from + std::max(count_max, 0));
   for (int i = from; i < end; ++i) {
     const int u = i % columns * settings.stride, v = i / columns * settings.stride;
     const float depth = picture.depth_m[static_cast<std::size_t>(v * picture.width + u)];

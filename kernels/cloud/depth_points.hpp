@@ -21,7 +21,7 @@ namespace glint {
 enum class DepthAlong : std::uint8_t { axis, ray };
 
 // Depth image: metres, row-major, borrowed; 0 or not finite where there is no measurement.
-struct DepthPicture {
+struct DepthImageView {
   int width = 0, height = 0;
   std::span<const float> depth_m;
 };
@@ -36,9 +36,9 @@ struct DepthPointSettings {
 // Number of pixels that a stride takes; they are numbered along the rows.
 // Processes pixels [from, from + most) of them; returns the first pixel not yet processed, which is
 // pixels_of() at the end. Adds the number of points that do not fit to `dropped`.
-[[nodiscard]] int pixels_of(const DepthPicture& picture, int stride) noexcept GLINT_NONBLOCKING;
-int add_depth_points(const DepthPicture& picture, const CameraModel& camera,
+[[nodiscard]] int pixels_of(const DepthImageView& picture, int stride) noexcept GLINT_NONBLOCKING;
+int add_depth_points(const DepthImageView& picture, const CameraModel& camera,
                      const Pose& T_world_camera, const DepthPointSettings& settings, int from,
-                     int most, PointCloud& points, int& dropped) noexcept GLINT_NONBLOCKING;
+                     int count_max, PointCloud& points, int& dropped) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

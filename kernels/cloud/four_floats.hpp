@@ -18,7 +18,7 @@ using FourFloats = float __attribute__((vector_size(16)));
 using FourMasks = std::int32_t __attribute__((vector_size(16)));
 
 // Arrays read four at a time are read up to this many elements beyond their end.
-inline constexpr int k_four_spare = 3;
+inline constexpr int k_four_padding = 3;
 
 [[nodiscard]] inline FourFloats load_four(const float* from) {
   FourFloats loaded;
@@ -26,7 +26,7 @@ inline constexpr int k_four_spare = 3;
   return loaded;
 }
 
-[[nodiscard]] inline FourFloats all_four(float value) {
+[[nodiscard]] inline FourFloats broadcast_four(float value) {
   return FourFloats{value, value, value, value};
 }
 
@@ -35,7 +35,7 @@ inline constexpr int k_four_spare = 3;
   return FourMasks{0, 1, 2, 3} < FourMasks{count, count, count, count};
 }
 
-[[nodiscard]] inline FourFloats where(const FourMasks& set, const FourFloats& value) {
+[[nodiscard]] inline FourFloats keep_lanes(const FourMasks& set, const FourFloats& value) {
   return reinterpret_cast<FourFloats>(set & reinterpret_cast<FourMasks>(value));
 }
 

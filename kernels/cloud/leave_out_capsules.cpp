@@ -6,7 +6,7 @@ namespace glint {
 namespace {
 
 // Returns false for NaN: every comparison with NaN is false.
-bool within(const LeftOut& capsule, const Vector3& point) noexcept {
+bool within(const ExclusionCapsule& capsule, const Vector3& point) noexcept {
   const Vector3 along = capsule.to - capsule.from, off = point - capsule.from;
   const double length = along.squaredNorm();
   const double share = length > 0 ? std::clamp(off.dot(along) / length, 0.0, 1.0) : 0.0;
@@ -16,15 +16,17 @@ bool within(const LeftOut& capsule, const Vector3& point) noexcept {
 
 }  // namespace
 
-int leave_out_capsules(std::span<const LeftOut> capsules, int first, PointCloud& points) noexcept {
-  const auto looked_at = capsules.first(std::min<std::size_t>(capsules.size(), k_left_out_max));
+int leave_out_capsules(std::span<const ExclusionCapsule> capsules, int first,
+                       PointCloud& points) noexcept {
+  const auto looked_at =
+      capsules.first(std::min<std::size_t>(capsules.size(), k_exclusion_capsules_max));
   int kept = std::max(first, 0);
   const int count = points.count;
   for (int i = kept; i < count; ++i) {
     const Vector3 point(static_cast<double>(points.x[i]), static_cast<double>(points.y[i]),
                         static_cast<double>(points.z[i]));
     bool inside = false;
-    for (const LeftOut& capsule : looked_at) inside = inside || within(capsule, point);
+    for (const ExclusionCapsule& capsule : looked_at) inside = inside || within(capsule, point);
     if (inside) continue;
     for (Column<float>* column : {&points.x, &points.y, &points.z, &points.normal_x,
                                   &points.normal_y, &points.normal_z, &points.weight}) {

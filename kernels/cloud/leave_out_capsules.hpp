@@ -18,15 +18,15 @@
 
 namespace glint {
 
-inline constexpr int k_left_out_max = 64;  // capsules per call; the first ones count
+inline constexpr int k_exclusion_capsules_max = 64;  // capsules per call; the first ones count
 
-struct LeftOut {
+struct ExclusionCapsule {
   Vector3 from = Vector3::Zero(), to = Vector3::Zero();  // in the cloud's frame
   double radius_m = 0;
 };
 
 // Processes the points [first, points.count); returns the number removed.
-int leave_out_capsules(std::span<const LeftOut> capsules, int first,
+int leave_out_capsules(std::span<const ExclusionCapsule> capsules, int first,
                        PointCloud& points) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -9,10 +9,10 @@ namespace glint {
 namespace {
 
 // Relative pivot limit: a smaller pivot is rounding error of the float sums.
-constexpr double k_pivot_least = 1e-6;
+constexpr double k_pivot_min = 1e-6;
 
 // exp(-t) for t in [0, 4]: eighth power of exp(-t / 8), by its Taylor series about t = 2.
-FourFloats falling(const FourFloats& t) {
+FourFloats exp_negative(const FourFloats& t) {
   const FourFloats h = 0.25f - 0.125f * t;
   const FourFloats series =
       1 + h * (1 + h * (0.5f + h * (1.0f / 6 + h * (1.0f / 24 + h * (1.0f / 120)))));
@@ -47,14 +47,16 @@ struct LocalFrame {
 constexpr int k_terms = 6;
 using Equations = std::array<std::array<double, k_terms + 1>, k_terms>;
 
-Equations sheet_equations(const Neighbours& near, const LocalFrame& frame, float radius_m) {
+Equations quadratic_equations(const Neighbours& near, const LocalFrame& frame, float radius_m) {
   const float scale = 1 / radius_m;
   const auto part = [scale](double axis) { return static_cast<float>(axis) * scale; };
-  const FourFloats ux = all_four(part(frame.u.x())), uy = all_four(part(frame.u.y())),
-                   uz = all_four(part(frame.u.z())), vx = all_four(part(frame.v.x())),
-                   vy = all_four(part(frame.v.y())), vz = all_four(part(frame.v.z())),
-                   nx = all_four(part(frame.normal.x())), ny = all_four(part(frame.normal.y())),
-                   nz = all_four(part(frame.normal.z())), height = all_four(part(frame.height));
+  const FourFloats ux = broadcast_four(part(frame.u.x())), uy = broadcast_four(part(frame.u.y())),
+                   uz = broadcast_four(part(frame.u.z())), vx = broadcast_four(part(frame.v.x())),
+                   vy = broadcast_four(part(frame.v.y())), vz = broadcast_four(part(frame.v.z())),
+                   nx = broadcast_four(part(frame.normal.x())),
+                   ny = broadcast_four(part(frame.normal.y())),
+                   nz = broadcast_four(part(frame.normal.z())),
+                   height = broadcast_four(part(frame.height));
   FourFloats s00{}, s10{}, s01{}, s20{}, s11{}, s02{}, s30{}, s21{}, s12{}, s03{}, s40{}, s31{},
       s22{}, s13{}, s04{}, f00{}, f10{}, f01{}, f20{}, f11{}, f02{};
   for (int i = 0; i < near.count; i += 4) {
@@ -63,7 +65,7 @@ Equations sheet_equations(const Neighbours& near, const LocalFrame& frame, float
     const FourFloats u = (x * ux + y * uy) + z * uz, v = (x * vx + y * vy) + z * vz;
     const FourFloats f = ((x * nx + y * ny) + z * nz) - height;
     const FourFloats uu = u * u, vv = v * v, uv = u * v;
-    const FourFloats w = load_four(near.weight + i) * falling((uu + vv) + f * f);
+    const FourFloats w = load_four(near.weight + i) * exp_negative((uu + vv) + f * f);
     const FourFloats wu = w * u, wv = w * v, wuu = w * uu, wuv = w * uv, wvv = w * vv;
     s00 += w, s10 += wu, s01 += wv, s20 += wuu, s11 += wuv, s02 += wvv;
     s30 += wuu * u, s21 += wuu * v, s12 += wvv * u, s03 += wvv * v;
@@ -81,25 +83,25 @@ Equations sheet_equations(const Neighbours& near, const LocalFrame& frame, float
 }
 
 // Height of the quadratic surface and its slopes along u and v at the foot of the point, in radii.
-struct Sheet {
+struct QuadraticSurface {
   double height = 0, along_u = 0, along_v = 0;
   bool found = false;
 };
 
 // LDL' factorisation applied to the right side (Golub and Van Loan 2013, algorithm 4.1.2).
-Sheet solve(Equations& rows) {
+QuadraticSurface solve(Equations& rows) {
   for (std::size_t k = 0; k < k_terms; ++k) {
     const double first = rows[k][k];
     if (k + 1 == k_terms) break;
     const double inverse = 1 / first;
     for (std::size_t r = k + 1; r < k_terms; ++r) {
       const double part = rows[k][r] * inverse;
-      const double least = k_pivot_least * rows[r][r];
+      const double least = k_pivot_min * rows[r][r];
       for (std::size_t c = r; c <= k_terms; ++c) rows[r][c] -= part * rows[k][c];
       if (!(rows[r][r] > least)) return {};
     }
   }
-  Sheet out;
+  QuadraticSurface out;
   out.height = rows[5][6] / rows[5][5];
   out.along_v = (rows[4][6] - rows[4][5] * out.height) / rows[4][4];
   out.along_u = (rows[3][6] - rows[3][5] * out.height - rows[3][4] * out.along_v) / rows[3][3];
@@ -107,7 +109,7 @@ Sheet solve(Equations& rows) {
   return out;
 }
 
-Vector3 turned_up(const Vector3& n) {
+Vector3 oriented_up(const Vector3& n) {
   const double first = n.z() != 0 ? n.z() : (n.y() != 0 ? n.y() : n.x());
   return first < 0 ? Vector3(-n) : n;
 }
@@ -115,24 +117,24 @@ Vector3 turned_up(const Vector3& n) {
 }  // namespace
 
 SurfacePoint local_surface(const Neighbours& near, float radius_m) noexcept {
-  for (int i = near.count; i < near.count + k_four_spare; ++i)
+  for (int i = near.count; i < near.count + k_four_padding; ++i)
     near.x[i] = near.y[i] = near.z[i] = near.weight[i] = 0;
   const FittedPlane plane = fit_plane(plane_sums(near));
-  const auto [u, v] = directions_across(plane.normal);
+  const auto [u, v] = orthonormal_basis(plane.normal);
   const LocalFrame frame{u, v, plane.normal, plane.mean.dot(plane.normal)};
   SurfacePoint out;
   out.offset_m = frame.height * frame.normal;
-  out.normal = turned_up(frame.normal);
-  if (near.count < k_sheet_neighbours_min) return out;
-  Equations equations = sheet_equations(near, frame, radius_m);
-  const Sheet sheet = solve(equations);
+  out.normal = oriented_up(frame.normal);
+  if (near.count < k_quadratic_neighbours_min) return out;
+  Equations equations = quadratic_equations(near, frame, radius_m);
+  const QuadraticSurface quadratic = solve(equations);
   const double radius = static_cast<double>(radius_m);
-  const double height = frame.height + sheet.height * radius;
-  if (!sheet.found || !(std::abs(height) <= radius)) return out;
+  const double height = frame.height + quadratic.height * radius;
+  if (!quadratic.found || !(std::abs(height) <= radius)) return out;
   out.offset_m = height * frame.normal;
-  const Vector3 across = frame.normal - sheet.along_u * u - sheet.along_v * v;
-  out.normal = turned_up(across / std::sqrt(across.squaredNorm()));
-  out.curved = true;
+  const Vector3 across = frame.normal - quadratic.along_u * u - quadratic.along_v * v;
+  out.normal = oriented_up(across / std::sqrt(across.squaredNorm()));
+  out.on_polynomial = true;
   return out;
 }
 

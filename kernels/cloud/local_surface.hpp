@@ -7,7 +7,7 @@
 //           point onto the polynomial along the plane's normal; the polynomial's normal there
 //           becomes the point's.
 // Cost:     linear in the neighbours (64 flops each, by fours), and 0.15 us for the two solutions.
-// Worst:    fewer than k_sheet_neighbours_min neighbours, neighbours nearly on a conic, or a
+// Worst:    fewer than k_quadratic_neighbours_min neighbours, neighbours nearly on a conic, or a
 //           polynomial that would move the point further than r: returns the plane's point and
 //           normal.
 // Accuracy: sums in float, by lanes, of coordinates relative to the point: within 2 um of sums in
@@ -23,11 +23,11 @@
 
 namespace glint {
 
-inline constexpr int k_sheet_neighbours_min = 6;  // number of coefficients of the polynomial
+inline constexpr int k_quadratic_neighbours_min = 6;  // number of coefficients of the polynomial
 inline constexpr int k_plane_neighbours_min = 3;
 
 // Coordinates relative to the point, which is one of the neighbours. Arrays must be readable
-// k_four_spare beyond `count`.
+// k_four_padding beyond `count`.
 struct Neighbours {
   float* x = nullptr;
   float* y = nullptr;
@@ -39,10 +39,10 @@ struct Neighbours {
 struct SurfacePoint {
   Vector3 offset_m = Vector3::Zero();  // from the point to its projection on the surface
   Vector3 normal = Vector3::UnitZ();   // sign: z, else y, else x positive
-  bool curved = false;                 // on the polynomial, not the plane
+  bool on_polynomial = false;          // on the polynomial, not the plane
 };
 
-// Requires at least k_plane_neighbours_min neighbours, all within radius_m. Writes k_four_spare
+// Requires at least k_plane_neighbours_min neighbours, all within radius_m. Writes k_four_padding
 // zeros beyond `count`.
 [[nodiscard]] SurfacePoint local_surface(const Neighbours& neighbours,
                                          float radius_m) noexcept GLINT_NONBLOCKING;

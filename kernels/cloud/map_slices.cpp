@@ -18,20 +18,21 @@ constexpr int pixel_steps_of(Lens lens) {
   return k_pixel_steps + (lens == Lens::lut ? 1 : k_ray_steps_max) * k_lens_step_steps;
 }
 
-constexpr MapSettings k_widest = in_slices({});
+constexpr MapSettings k_settings_max = limited_for_slices({});
 constexpr int k_points_steps =
-    k_call_steps +
-    k_map_pixels_at_once * (pixel_steps_of(Lens::brown) + k_left_out_max * k_capsule_steps +
-                            k_voxel_probes_max * k_probe_steps);
+    k_call_steps + k_map_pixels_at_once *
+                       (pixel_steps_of(Lens::brown) + k_exclusion_capsules_max * k_capsule_steps +
+                        k_voxel_probes_max * k_probe_steps);
 static_assert(k_map_item_steps_max - k_call_steps - k_begin_steps >=
-              std::max({k_points_steps, RadiusOutlier::steps_max(k_widest.outliers),
-                        MovingLeastSquares::steps_max(k_widest.smoothing), PlaneSearch::steps_max(),
-                        PlaneSupport::steps_max(k_widest.support),
-                        k_sort_turn_steps + k_key_steps}));
+              std::max({k_points_steps, RadiusOutlier::steps_max(k_settings_max.outliers),
+                        MovingLeastSquares::steps_max(k_settings_max.smoothing),
+                        PlaneSearch::steps_max(), PlaneSupport::steps_max(k_settings_max.support),
+                        k_sort_pass_steps + k_key_steps}));
 
 bool fits(const MapSettings& s) {
   return s.voxels_max >= 1 && s.voxels_max <= k_cloud_points_max && s.depth.stride >= 1 &&
-         s.smoothing.candidates_max >= 1 && s.smoothing.candidates_max <= k_map_smoothed_over_max &&
+         s.smoothing.candidates_max >= 1 &&
+         s.smoothing.candidates_max <= k_map_smoothing_candidates_max &&
          s.outliers.candidates_max <= k_map_candidates_max &&
          s.support.candidates_max <= k_map_candidates_max;
 }
@@ -47,13 +48,13 @@ std::size_t MapSlices::bytes(const MapSettings& s) noexcept {
          PlaneSupport::bytes(most) + Arena::k_alignment;
 }
 
-Reason MapSlices::prepare(const MapSettings& s, int pictures_a_map, Arena& arena) noexcept {
+Reason MapSlices::prepare(const MapSettings& s, int images_per_map, Arena& arena) noexcept {
   stage_ = Stage::idle;
   totals_ = {};
-  pictures_since_ = 0;
-  if (!fits(s) || pictures_a_map < 1) return Reason::out_of_range;
+  images_since_ = 0;
+  if (!fits(s) || images_per_map < 1) return Reason::out_of_range;
   settings_ = s;
-  pictures_a_map_ = pictures_a_map;
+  images_per_map_ = images_per_map;
   const int most = s.voxels_max;
   Reason reason = points_.prepare(k_map_pixels_at_once, arena);
   const auto then = [&](auto prepare) {
@@ -70,16 +71,16 @@ Reason MapSlices::prepare(const MapSettings& s, int pictures_a_map, Arena& arena
   return reason;
 }
 
-bool MapSlices::look(const MapPicture& picture) noexcept {
-  const DepthPicture& depth = picture.picture;
+bool MapSlices::look(const MapImage& picture) noexcept {
+  const DepthImageView& depth = picture.picture;
   if (!idle() || points_.capacity == 0 || depth.width < 1 || depth.height < 1 ||
       depth.depth_m.size() !=
           static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height)) {
     return false;
   }
   picture_ = picture;
-  picture_.left_out =
-      picture.left_out.first(std::min<std::size_t>(picture.left_out.size(), k_left_out_max));
+  picture_.left_out = picture.left_out.first(
+      std::min<std::size_t>(picture.left_out.size(), k_exclusion_capsules_max));
   pixel_steps_ = pixel_steps_of(picture.camera.lens) +
                  static_cast<int>(picture_.left_out.size()) * k_capsule_steps;
   at_ = 0;
@@ -87,9 +88,9 @@ bool MapSlices::look(const MapPicture& picture) noexcept {
   return true;
 }
 
-void MapSlices::make_map() noexcept {
-  if (!idle() || pictures_since_ == 0) return;
-  pictures_since_ = 0;
+void MapSlices::start_map() noexcept {
+  if (!idle() || images_since_ == 0) return;
+  images_since_ = 0;
   at_ = 0;
   voxel_points_.count = kept_.count = next().count = 0;
   stage_ = Stage::voxels;
@@ -163,10 +164,10 @@ int MapSlices::add_points() noexcept {
     ++totals_.pictures;
     totals_.voxels = voxels_.count();
     totals_.dropped = voxels_.dropped();
-    ++pictures_since_;
+    ++images_since_;
     stage_ = Stage::idle;
     picture_ = {};
-    if (pictures_since_ >= pictures_a_map_) make_map();
+    if (images_since_ >= images_per_map_) start_map();
   }
   return k_call_steps + looked_at * pixel_steps_ +
          static_cast<int>(voxels_.probes() - probes) * k_probe_steps;
@@ -192,14 +193,14 @@ int MapSlices::snap_points(int most) noexcept {
 }
 
 void MapSlices::publish() noexcept {
-  out_ = 1 - out_;
+  published_ = 1 - published_;
   stage_ = Stage::idle;
   ++totals_.maps;
   totals_.out_of_range = voxels_.out_of_range() + outliers_.out_of_range();
   totals_.kept = kept_.count;
   totals_.smoothed = map().count;
   totals_.planes = planes_.count();
-  totals_.on_planes = -support_.taken_off();
+  totals_.on_planes = -support_.removed();
   for (int i = 0; i < planes_.count(); ++i) totals_.on_planes += planes_.plane(i).points;
 }
 

@@ -1,7 +1,7 @@
 // Incremental point-cloud map from depth images, in slices of bounded work.
 //
 // What:     adds the points of an image to the voxels, without those inside the tracked pen and
-//           hands. After every pictures_a_map images it builds a new map: voxels, outlier removal,
+//           hands. After every images_per_map images it builds a new map: voxels, outlier removal,
 //           smoothing, planes, projection onto planes. The new map then replaces the published one.
 // Cost:     a slice ends once its steps (slice_size.hpp) are used up; a map of v voxels takes about
 //           300 v steps, an image 60 or more a pixel.
@@ -23,25 +23,25 @@
 namespace glint {
 
 // Largest settings of a map in slices, so that the work for one point is bounded.
-inline constexpr int k_map_candidates_max = 1024, k_map_smoothed_over_max = 512;
+inline constexpr int k_map_candidates_max = 1024, k_map_smoothing_candidates_max = 512;
 inline constexpr int k_map_item_steps_max = 13'000;
 inline constexpr int k_map_pixels_at_once = 8;
 
 // Reduces the numbers of candidates to these limits.
-[[nodiscard]] constexpr MapSettings in_slices(MapSettings settings) noexcept {
+[[nodiscard]] constexpr MapSettings limited_for_slices(MapSettings settings) noexcept {
   const auto at_most = [](int& value, int most) { value = value < most ? value : most; };
   at_most(settings.outliers.candidates_max, k_map_candidates_max);
-  at_most(settings.smoothing.candidates_max, k_map_smoothed_over_max);
+  at_most(settings.smoothing.candidates_max, k_map_smoothing_candidates_max);
   at_most(settings.support.candidates_max, k_map_candidates_max);
   return settings;
 }
 
 // A depth image and the pose of its camera. All borrowed.
-struct MapPicture {
-  DepthPicture picture;
+struct MapImage {
+  DepthImageView picture;
   CameraModel camera;
   Pose T_world_camera;
-  std::span<const LeftOut> left_out;  // in the world frame
+  std::span<const ExclusionCapsule> left_out;  // in the world frame
 };
 
 // Counts since prepare().
@@ -58,23 +58,23 @@ class MapSlices {
   [[nodiscard]] static std::size_t bytes(const MapSettings& settings) noexcept;
   // Reason: none; out_of_range (a setting, also one that would exceed k_map_item_steps_max);
   // not_prepared (too little left in the arena).
-  [[nodiscard]] Reason prepare(const MapSettings& settings, int pictures_a_map,
+  [[nodiscard]] Reason prepare(const MapSettings& settings, int images_per_map,
                                Arena& arena) noexcept;
 
   // Returns true if no work is pending: the next image is accepted and borrowed data may be
   // released.
   [[nodiscard]] bool idle() const noexcept { return stage_ == Stage::idle; }
   // Starts an image. Returns false if work is pending or the image's size differs from its data.
-  [[nodiscard]] bool look(const MapPicture& picture) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool look(const MapImage& picture) noexcept GLINT_NONBLOCKING;
   // Starts a map of the present voxels. Does nothing if no image was added since the last map or
   // work is pending.
-  void make_map() noexcept GLINT_NONBLOCKING;
+  void start_map() noexcept GLINT_NONBLOCKING;
   // Runs one slice. Returns the steps taken: 0 if no work is pending, else at most most_steps +
   // k_map_item_steps_max.
   int step(int most_steps) noexcept GLINT_NONBLOCKING;
 
   // The published map; empty before the first one is complete.
-  [[nodiscard]] const PointCloud& map() const noexcept { return maps_[out_]; }
+  [[nodiscard]] const PointCloud& map() const noexcept { return maps_[published_]; }
   [[nodiscard]] const MapTotals& totals() const noexcept { return totals_; }
 
   // Pending work: points of an image, or the stages of a new map.
@@ -91,7 +91,7 @@ class MapSlices {
   [[nodiscard]] Stage stage() const noexcept { return stage_; }
 
  private:
-  [[nodiscard]] PointCloud& next() noexcept { return maps_[1 - out_]; }
+  [[nodiscard]] PointCloud& next() noexcept { return maps_[1 - published_]; }
   [[nodiscard]] int step_of_stage(int most_steps) noexcept;
   [[nodiscard]] int add_points() noexcept;
   [[nodiscard]] int write_voxels(int most_steps) noexcept;
@@ -99,13 +99,13 @@ class MapSlices {
   void publish() noexcept;
 
   MapSettings settings_;
-  int pictures_a_map_ = 1, pictures_since_ = 0;
+  int images_per_map_ = 1, images_since_ = 0;
   Stage stage_ = Stage::idle;
-  MapPicture picture_;
+  MapImage picture_;
   int at_ = 0, pixel_steps_ = 0;
   PointCloud points_, voxel_points_, kept_;
   std::array<PointCloud, 2> maps_;
-  std::size_t out_ = 0;
+  std::size_t published_ = 0;
   VoxelGrid voxels_;
   RadiusOutlier outliers_;
   MovingLeastSquares smoothing_;

@@ -17,7 +17,7 @@ Reason MovingLeastSquares::prepare(const MovingLeastSquaresSettings& settings, i
   if (reason != Reason::none) return reason;
   for (Column<float>* column :
        {&x_, &y_, &z_, &weight_, &near_x_, &near_y_, &near_z_, &near_weight_}) {
-    if (!column->reserve(settings.candidates_max + k_four_spare, arena)) {
+    if (!column->reserve(settings.candidates_max + k_four_padding, arena)) {
       return Reason::not_prepared;
     }
   }
@@ -32,7 +32,7 @@ void MovingLeastSquares::begin(const PointCloud& points) noexcept {
   cloud_ = &points;
   grid_.begin(points, settings_.radius_m);
   walk_.begin();
-  appended_ = dropped_ = lonely_ = flat_ = cut_ = 0;
+  appended_ = dropped_ = isolated_ = on_plane_ = candidates_exceeded_ = 0;
 }
 
 // All points of a cell have the same candidates: gathered once per cell.
@@ -48,7 +48,7 @@ void MovingLeastSquares::gather_candidates() noexcept {
     std::copy_n(grid_.z() + row.begin, taken, z_.data() + candidates_);
     for (int i = 0; i < taken; ++i) {
       const bool equal = settings_.weights == NeighbourWeights::equal;
-      weight_[candidates_ + i] = equal ? 1 : cloud_->weight[grid_.place_in_cloud(row.begin + i)];
+      weight_[candidates_ + i] = equal ? 1 : cloud_->weight[grid_.index_in_cloud(row.begin + i)];
     }
     candidates_ += taken;
   }
@@ -71,26 +71,26 @@ void MovingLeastSquares::gather_neighbours(int point) noexcept {
 // Returns the steps taken.
 int MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
   gather_neighbours(point);
-  cut_ += cell_cut_ ? 1 : 0;
+  candidates_exceeded_ += cell_cut_ ? 1 : 0;
   if (near_.count < k_plane_neighbours_min) {
-    ++lonely_;
+    ++isolated_;
     return k_surface_steps + k_near_steps * candidates_;
   }
   const int steps = k_surface_steps + k_near_steps * candidates_ + k_neighbour_steps * near_.count;
   const SurfacePoint surface = local_surface(near_, settings_.radius_m);
-  flat_ += surface.curved ? 0 : 1;
+  on_plane_ += surface.on_polynomial ? 0 : 1;
   const auto moved = [](float from, double by) {
     return static_cast<float>(static_cast<double>(from) + by);
   };
   const int at = smoothed.count;
-  const float weight = cloud_->weight[grid_.place_in_cloud(point)];
+  const float weight = cloud_->weight[grid_.index_in_cloud(point)];
   if (!smoothed.add(moved(grid_.x()[point], surface.offset_m.x()),
                     moved(grid_.y()[point], surface.offset_m.y()),
                     moved(grid_.z()[point], surface.offset_m.z()), weight)) {
     ++dropped_;
     return steps;
   }
-  sources_[appended_++] = grid_.place_in_cloud(point);
+  sources_[appended_++] = grid_.index_in_cloud(point);
   smoothed.normal_x[at] = static_cast<float>(surface.normal.x());
   smoothed.normal_y[at] = static_cast<float>(surface.normal.y());
   smoothed.normal_z[at] = static_cast<float>(surface.normal.z());
@@ -111,7 +111,7 @@ bool MovingLeastSquares::step(SliceSize most, PointCloud& smoothed) noexcept {
 Reason MovingLeastSquares::reason() const noexcept {
   if (!prepared_) return Reason::not_prepared;
   if (dropped() > 0) return Reason::cloud_full;
-  return cut_ > 0 ? Reason::search_full : Reason::none;
+  return candidates_exceeded_ > 0 ? Reason::search_full : Reason::none;
 }
 
 }  // namespace glint

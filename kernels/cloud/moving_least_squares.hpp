@@ -39,7 +39,7 @@ class MovingLeastSquares {
   [[nodiscard]] static constexpr std::size_t bytes(const MovingLeastSquaresSettings& settings,
                                                    int points) noexcept {
     return NeighbourGrid::bytes(points) + Column<std::int32_t>::bytes(points) +
-           8 * Column<float>::bytes(settings.candidates_max + k_four_spare);
+           8 * Column<float>::bytes(settings.candidates_max + k_four_padding);
   }
   // Reason: none; out_of_range (a setting, points); not_prepared (too little left in the arena).
   [[nodiscard]] Reason prepare(const MovingLeastSquaresSettings& settings, int points,
@@ -65,11 +65,11 @@ class MovingLeastSquares {
   // Discarded points: `smoothed` or the grid was full; beyond the grid; too few neighbours.
   [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
   [[nodiscard]] int out_of_range() const noexcept { return grid_.out_of_range(); }
-  [[nodiscard]] int lonely() const noexcept { return lonely_; }
+  [[nodiscard]] int isolated() const noexcept { return isolated_; }
   // Points projected onto the plane because the polynomial failed; points with more candidates than
   // candidates_max.
-  [[nodiscard]] int flat() const noexcept { return flat_; }
-  [[nodiscard]] int cut() const noexcept { return cut_; }
+  [[nodiscard]] int on_plane() const noexcept { return on_plane_; }
+  [[nodiscard]] int candidates_exceeded() const noexcept { return candidates_exceeded_; }
   // none; cloud_full; search_full (some cut); not_prepared.
   [[nodiscard]] Reason reason() const noexcept;
 
@@ -90,7 +90,7 @@ class MovingLeastSquares {
   bool prepared_ = false;
   int candidates_ = 0;
   bool cell_cut_ = false;
-  int dropped_ = 0, lonely_ = 0, flat_ = 0, cut_ = 0;
+  int dropped_ = 0, isolated_ = 0, on_plane_ = 0, candidates_exceeded_ = 0;
 };
 
 }  // namespace glint

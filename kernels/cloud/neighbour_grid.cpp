@@ -51,10 +51,10 @@ Reason NeighbourGrid::prepare(int points, Arena& arena) noexcept {
   phase_ = 5;
   if (points < 1 || points > k_cloud_points_max) return Reason::out_of_range;
   for (Column<float>* column : {&x_, &y_, &z_}) {
-    if (!column->reserve(points + k_four_spare, arena)) return Reason::not_prepared;
+    if (!column->reserve(points + k_four_padding, arena)) return Reason::not_prepared;
   }
   if (!keyed_.reserve(points, arena) || !spare_.reserve(points, arena) ||
-      !place_.reserve(points, arena) || !first_.reserve(points + 1, arena) ||
+      !cloud_index_.reserve(points, arena) || !first_.reserve(points + 1, arena) ||
       !cell_key_.reserve(points, arena)) {
     return Reason::not_prepared;
   }
@@ -90,7 +90,7 @@ void NeighbourGrid::next_phase() noexcept {
   if (phase_ == 0) {
     for (auto& digit : digits_) {
       std::int32_t before = 0;
-      for (std::int32_t& place : digit) before += std::exchange(place, before);
+      for (std::int32_t& begin_of_digit : digit) before += std::exchange(begin_of_digit, before);
     }
   } else if (phase_ <= k_digits) {
     std::swap(keyed_, spare_);
@@ -129,10 +129,10 @@ void NeighbourGrid::move_points(int end) noexcept {
 void NeighbourGrid::copy_points(int end) noexcept {
   for (int i = at_; i < end; ++i) {
     const Keyed point = keyed_[i];
-    x_[i] = cloud_->x[point.place];
-    y_[i] = cloud_->y[point.place];
-    z_[i] = cloud_->z[point.place];
-    place_[i] = point.place;
+    x_[i] = cloud_->x[point.index];
+    y_[i] = cloud_->y[point.index];
+    z_[i] = cloud_->z[point.index];
+    cloud_index_[i] = point.index;
     if (cells_ == 0 || cell_key_[cells_ - 1] != point.key) {
       cell_key_[cells_] = point.key;
       first_[cells_++] = i;

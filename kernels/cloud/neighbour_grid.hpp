@@ -31,12 +31,12 @@ inline constexpr int k_row_search_max = 33;  // 8 linear steps, then 25 bisectio
 class NeighbourGrid {
   struct Keyed {
     std::uint32_t key;
-    std::int32_t place;
+    std::int32_t index;
   };
 
  public:
   [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
-    return 2 * Column<Keyed>::bytes(points) + 3 * Column<float>::bytes(points + k_four_spare) +
+    return 2 * Column<Keyed>::bytes(points) + 3 * Column<float>::bytes(points + k_four_padding) +
            3 * Column<std::int32_t>::bytes(points + 1);
   }
   // Reason: none; out_of_range (points); not_prepared (less than bytes(points) left in the arena).
@@ -59,11 +59,11 @@ class NeighbourGrid {
   [[nodiscard]] int out_of_range() const noexcept { return out_of_range_; }
   [[nodiscard]] int dropped() const noexcept { return dropped_; }
 
-  // Sorted columns, readable k_four_spare beyond the end, and each point's index in the cloud.
+  // Sorted columns, readable k_four_padding beyond the end, and each point's index in the cloud.
   [[nodiscard]] const float* x() const noexcept { return x_.data(); }
   [[nodiscard]] const float* y() const noexcept { return y_.data(); }
   [[nodiscard]] const float* z() const noexcept { return z_.data(); }
-  [[nodiscard]] int place_in_cloud(int i) const noexcept { return place_[i]; }
+  [[nodiscard]] int index_in_cloud(int i) const noexcept { return cloud_index_[i]; }
   // First point of a cell; for cells() the number of points.
   [[nodiscard]] int first_point(int cell) const noexcept { return first_[cell]; }
   [[nodiscard]] std::uint32_t key(int cell) const noexcept { return cell_key_[cell]; }
@@ -85,7 +85,7 @@ class NeighbourGrid {
   std::array<std::array<std::int32_t, 1 << k_grid_axis_bits>, k_digits> digits_{};
   Column<Keyed> keyed_, spare_;
   Column<float> x_, y_, z_;
-  Column<std::int32_t> place_, first_;
+  Column<std::int32_t> cloud_index_, first_;
   Column<std::uint32_t> cell_key_;
 };
 

@@ -14,7 +14,7 @@ namespace glint {
 
 inline constexpr int k_key_steps = 20, k_sort_steps = 6;  // per point, once; per point, four times
 // At the start of sorting and between two passes: clearing and summing of the digits.
-inline constexpr int k_sort_turn_steps = 4096;
+inline constexpr int k_sort_pass_steps = 4096;
 // Per cell, without the search for the rows around it.
 inline constexpr int k_cell_steps = 100;
 inline constexpr int k_cell_steps_max = k_cell_steps + 2 * k_cell_rows * k_row_search_max;
@@ -42,7 +42,7 @@ class NeighbourWalk {
     if (!grid.sorted()) {
       const int left = grid.left_in_pass(), each = grid.keyed() ? k_sort_steps : k_key_steps;
       const int points = std::min(most.items_of(each), left);
-      taken_ = each * points + (points == left ? k_sort_turn_steps : 0);
+      taken_ = each * points + (points == left ? k_sort_pass_steps : 0);
       grid.sort(points);
       return grid.sorted() && grid.count() == 0;
     }

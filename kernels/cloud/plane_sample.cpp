@@ -51,9 +51,10 @@ bool PlaneSample::candidate_of(std::uint64_t drawn, const PlaneGate& gate,
 }
 
 int PlaneSample::score(const CandidatePlane& plane, const PlaneGate& gate) const noexcept {
-  const FourFloats nx = all_four(plane.nx), ny = all_four(plane.ny), nz = all_four(plane.nz);
-  const FourFloats threshold = all_four(gate.threshold_m);
-  const FourFloats cosine = all_four(gate.normal_cosine_min);
+  const FourFloats nx = broadcast_four(plane.nx), ny = broadcast_four(plane.ny),
+                   nz = broadcast_four(plane.nz);
+  const FourFloats threshold = broadcast_four(gate.threshold_m);
+  const FourFloats cosine = broadcast_four(gate.normal_cosine_min);
   FourMasks on{};
   for (int i = 0; i < count_; i += 4) {
     const FourFloats height = nx * load_four(x_.data() + i) + ny * load_four(y_.data() + i) +

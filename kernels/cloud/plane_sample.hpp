@@ -32,9 +32,9 @@ struct PlaneGate {
 // Counter-based random number (SplitMix64): a function of random seed, stream and counter alone.
 // Source: Steele, Lea and Flood 2014, fig. 13, evaluated at the counter.
 [[nodiscard]] inline std::uint64_t random_at(std::uint64_t seed, int stream, int counter) {
-  const std::uint64_t place =
+  const std::uint64_t index =
       (static_cast<std::uint64_t>(stream) << 40) + static_cast<std::uint64_t>(counter) + 1;
-  std::uint64_t z = seed + place * 0x9E3779B97F4A7C15u;
+  std::uint64_t z = seed + index * 0x9E3779B97F4A7C15u;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
   return z ^ (z >> 31);

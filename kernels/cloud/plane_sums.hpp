@@ -2,8 +2,8 @@
 //
 // What:     the normal is the eigenvector of the points' covariance with the smallest eigenvalue.
 // Cost:     data independent: 0.1 us.
-// Worst:    collinear or coincident points: returns one of the planes through them; `spread` is
-//           near 0.
+// Worst:    collinear or coincident points: returns one of the planes through them;
+//           `in_plane_variance_min` is near 0.
 // Accuracy: coordinates should be relative to a point nearby: their squares are subtracted.
 // Source:   Pearson 1901, Philosophical Magazine 2(11), p. 559.
 #pragma once
@@ -26,8 +26,8 @@ struct PlaneSums {
 struct FittedPlane {
   Vector3 mean = Vector3::Zero();
   Vector3 normal = Vector3::UnitZ();
-  double variance = 0;  // along the normal
-  double spread = 0;    // smaller of the two in-plane variances
+  double variance = 0;               // along the normal
+  double in_plane_variance_min = 0;  // smaller of the two in-plane variances
 };
 
 // Requires n >= 1.
@@ -44,26 +44,26 @@ struct FittedPlane {
                    c.xy * v.x() + c.yy * v.y() + c.yz * v.z(),
                    c.xz * v.x() + c.yz * v.y() + c.zz * v.z());
   };
-  const LoneVector lone = lone_eigenvector(c);
+  const IsolatedEigenvector isolated = isolated_eigenvector(c);
   // The two other eigenvectors are perpendicular to the isolated one.
-  const auto [p, q] = directions_across(lone.v);
+  const auto [p, q] = orthonormal_basis(isolated.v);
   const Vector3 cp = times(p), cq = times(q);
   const double middle = 0.5 * (p.dot(cp) + q.dot(cq));
   const double half = 0.5 * (p.dot(cp) - q.dot(cq)), mixed = p.dot(cq);
-  const double apart = std::sqrt(half * half + mixed * mixed);
-  if (!lone.largest) {
-    out.normal = lone.v;
-    out.variance = lone.v.dot(times(lone.v));
-    out.spread = middle - apart;
+  const double half_difference = std::sqrt(half * half + mixed * mixed);
+  if (!isolated.largest) {
+    out.normal = isolated.v;
+    out.variance = isolated.v.dot(times(isolated.v));
+    out.in_plane_variance_min = middle - half_difference;
     return out;
   }
   // Larger column of C - lambda_max I, C the 2x2 covariance in p and q: eigenvector of lambda_min.
-  const double along_p = half < 0 ? apart - half : mixed;
-  const double along_q = half < 0 ? -mixed : -(apart + half);
+  const double along_p = half < 0 ? half_difference - half : mixed;
+  const double along_q = half < 0 ? -mixed : -(half_difference + half);
   const double length = std::sqrt(along_p * along_p + along_q * along_q);
   out.normal = length > 0 ? Vector3((along_p * p + along_q * q) / length) : q;
-  out.variance = middle - apart;
-  out.spread = middle + apart;
+  out.variance = middle - half_difference;
+  out.in_plane_variance_min = middle + half_difference;
   return out;
 }
 

@@ -9,7 +9,8 @@ Reason PlaneSupport::prepare(const PlaneSupportSettings& settings, int points,
                              Arena& arena) noexcept {
   prepared_ = false;
   if (!(settings.radius_m > 0 && std::isfinite(1 / settings.radius_m)) ||
-      !(settings.part_min >= 0 && settings.part_min <= 1) || settings.candidates_max < 1) {
+      !(settings.support_share_min >= 0 && settings.support_share_min <= 1) ||
+      settings.candidates_max < 1) {
     return Reason::out_of_range;
   }
   settings_ = settings;
@@ -29,7 +30,7 @@ void PlaneSupport::begin(const PointCloud& points, const PlaneSearch& planes) no
   marked_ = 0;
   grid_.begin(points, settings_.radius_m);
   walk_.begin();
-  taken_off_ = 0;
+  removed_ = 0;
 }
 
 bool PlaneSupport::is_supported(int point, std::uint8_t plane) noexcept {
@@ -43,35 +44,35 @@ bool PlaneSupport::is_supported(int point, std::uint8_t plane) noexcept {
       const float dx = grid_.x()[i] - x, dy = grid_.y()[i] - y, dz = grid_.z()[i] - z;
       if ((dx * dx + dy * dy) + dz * dz > limit) continue;
       ++near;
-      on_plane += planes_->plane_of(grid_.place_in_cloud(i)) == plane ? 1 : 0;
+      on_plane += planes_->plane_of(grid_.index_in_cloud(i)) == plane ? 1 : 0;
     }
   }
-  looked_at_ = settings_.candidates_max - left;
-  return static_cast<float>(on_plane) >= settings_.part_min * static_cast<float>(near);
+  compared_ = settings_.candidates_max - left;
+  return static_cast<float>(on_plane) >= settings_.support_share_min * static_cast<float>(near);
 }
 
 bool PlaneSupport::step(SliceSize most) noexcept {
   steps_ = 0;
   if (!prepared_) return true;
   if (marked_ < points_) {
-    const std::int64_t wanted =
-        std::min<std::int64_t>(most.items, std::max<std::int64_t>(1, most.steps) * k_marked_a_step);
+    const std::int64_t wanted = std::min<std::int64_t>(
+        most.items, std::max<std::int64_t>(1, most.steps) * k_marked_per_step);
     const auto marked = static_cast<int>(std::min<std::int64_t>(points_ - marked_, wanted));
     std::fill_n(plane_of_.data() + marked_, marked, PlaneSearch::k_no_plane);
     marked_ += marked;
-    steps_ = 1 + marked / k_marked_a_step;
+    steps_ = 1 + marked / k_marked_per_step;
     return false;
   }
   const bool done = walk_.step(
       grid_, most, [] { return 0; },
       [&](int point) {
-        const int place = grid_.place_in_cloud(point);
+        const int place = grid_.index_in_cloud(point);
         const std::uint8_t plane = planes_->plane_of(place);
-        looked_at_ = 0;
+        compared_ = 0;
         const bool stays = plane == PlaneSearch::k_no_plane || is_supported(point, plane);
         plane_of_[place] = stays ? plane : PlaneSearch::k_no_plane;
-        taken_off_ += stays ? 0 : 1;
-        return k_support_steps + k_vote_steps * looked_at_;
+        removed_ += stays ? 0 : 1;
+        return k_support_steps + k_vote_steps * compared_;
       });
   steps_ = walk_.steps();
   return done;

@@ -2,7 +2,7 @@
 //
 // What:     a plane is infinite and intersects objects on its way: points in a stripe of the object
 //           are near the plane, and some have its normal by chance. A point stays on its plane if
-//           at least part_min of the points within radius_m of it are on that plane too.
+//           at least support_share_min of the points within radius_m of it are on that plane too.
 // Cost:     sorting (neighbour_grid.hpp), then at most candidates_max distances for each point.
 // Worst:    more than candidates_max points around a point: its own row counts first.
 // Accuracy: in a stripe twice the plane's threshold wide a quarter of the neighbours within 5 cm
@@ -19,11 +19,11 @@
 namespace glint {
 
 // Steps per point, per candidate; points marked per step.
-inline constexpr int k_support_steps = 8, k_vote_steps = 6, k_marked_a_step = 16;
+inline constexpr int k_support_steps = 8, k_vote_steps = 6, k_marked_per_step = 16;
 
 struct PlaneSupportSettings {
   float radius_m = 0.05f;
-  float part_min = 0.4f;
+  float support_share_min = 0.4f;
   int candidates_max = 4096;
 };
 
@@ -53,7 +53,7 @@ class PlaneSupport {
     return point < marked_ ? plane_of_[point] : PlaneSearch::k_no_plane;
   }
   // Points removed from their plane.
-  [[nodiscard]] int taken_off() const noexcept { return taken_off_; }
+  [[nodiscard]] int removed() const noexcept { return removed_; }
 
  private:
   [[nodiscard]] bool is_supported(int point, std::uint8_t plane) noexcept;
@@ -64,7 +64,7 @@ class PlaneSupport {
   const PlaneSearch* planes_ = nullptr;
   Column<std::uint8_t> plane_of_;
   bool prepared_ = false;
-  int points_ = 0, marked_ = 0, capacity_ = 0, taken_off_ = 0, looked_at_ = 0, steps_ = 0;
+  int points_ = 0, marked_ = 0, capacity_ = 0, removed_ = 0, compared_ = 0, steps_ = 0;
 };
 
 }  // namespace glint

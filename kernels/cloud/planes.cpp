@@ -6,8 +6,8 @@ namespace glint {
 Reason PlaneSearch::prepare(const PlaneSettings& settings, int points, Arena& arena) noexcept {
   prepared_ = false;
   if (points < 1 || points > k_cloud_points_max || settings.planes_max < 0 ||
-      settings.planes_max > k_planes_max || settings.points_min < 3 || settings.tries < 1 ||
-      settings.scored_max < 1 || !(settings.gate.threshold_m > 0) ||
+      settings.planes_max > k_planes_max || settings.points_min < 3 ||
+      settings.candidates_max < 1 || settings.scored_max < 1 || !(settings.gate.threshold_m > 0) ||
       !std::isfinite(settings.gate.threshold_m) ||
       !(std::abs(settings.gate.normal_cosine_min) <= 1)) {
     return Reason::out_of_range;
@@ -41,7 +41,7 @@ Reason PlaneSearch::reason() const noexcept {
 bool PlaneSearch::step(SliceSize most) noexcept {
   steps_ = 0;
   if (!prepared_ || phase_ == Phase::done) return true;
-  steps_ = k_plane_turn_steps;
+  steps_ = k_plane_call_steps;
   // End of the items of this call; counts their steps.
   const auto end_of = [&](int all, int steps_each) {
     const int items = std::min(all - at_, most.items_of(steps_each));
@@ -59,14 +59,14 @@ bool PlaneSearch::step(SliceSize most) noexcept {
       break;
     case Phase::tries:
       try_planes(most);
-      if (at_ == settings_.tries || scored_ == settings_.scored_max) next_phase();
+      if (at_ == settings_.candidates_max || scored_ == settings_.scored_max) next_phase();
       break;
     case Phase::fit:
       add_to_fit(end_of(free_count_, k_plane_fit_steps));
       if (at_ == free_count_) finish_fit();
       break;
     case Phase::take:
-      take_points(end_of(free_count_, k_plane_take_steps));
+      assign_points(end_of(free_count_, k_plane_take_steps));
       if (at_ == free_count_) next_phase();
       break;
     case Phase::done:
@@ -120,18 +120,18 @@ void PlaneSearch::draw_sample(int end) noexcept {
              static_cast<std::uint64_t>(sample_size_);
     };
     const std::uint64_t first = part(at_), width = part(at_ + 1) - first;
-    const std::uint64_t drawn = random_at(settings_.seed, count_, at_) % width;
+    const std::uint64_t drawn = random_at(settings_.random_seed, count_, at_) % width;
     sample_.add(*cloud_, free_[static_cast<int>(first + drawn)]);
   }
 }
 
 void PlaneSearch::try_planes(SliceSize most) noexcept {
-  for (int work = 0; work < most.items && steps_ - k_plane_turn_steps < most.steps &&
-                     at_ < settings_.tries && scored_ < settings_.scored_max;
+  for (int work = 0; work < most.items && steps_ - k_plane_call_steps < most.steps &&
+                     at_ < settings_.candidates_max && scored_ < settings_.scored_max;
        ++work, ++at_) {
     steps_ += k_plane_try_steps;
     CandidatePlane candidate;
-    const std::uint64_t drawn = random_at(settings_.seed, count_, k_plane_sample + at_);
+    const std::uint64_t drawn = random_at(settings_.random_seed, count_, k_plane_sample + at_);
     if (!sample_.candidate_of(drawn, settings_.gate, candidate)) continue;
     ++scored_;
     work += sample_size_;
@@ -158,12 +158,12 @@ void PlaneSearch::add_to_fit(int end) noexcept {
     const int i = free_[at_];
     if (!is_on(best_, i)) continue;
     if (sums_.n == 0) {
-      around_ = Vector3(static_cast<double>(cloud_->x[i]), static_cast<double>(cloud_->y[i]),
-                        static_cast<double>(cloud_->z[i]));
+      sum_origin_ = Vector3(static_cast<double>(cloud_->x[i]), static_cast<double>(cloud_->y[i]),
+                            static_cast<double>(cloud_->z[i]));
     }
-    sums_.add(static_cast<double>(cloud_->x[i]) - around_.x(),
-              static_cast<double>(cloud_->y[i]) - around_.y(),
-              static_cast<double>(cloud_->z[i]) - around_.z());
+    sums_.add(static_cast<double>(cloud_->x[i]) - sum_origin_.x(),
+              static_cast<double>(cloud_->y[i]) - sum_origin_.y(),
+              static_cast<double>(cloud_->z[i]) - sum_origin_.z());
   }
 }
 
@@ -175,7 +175,7 @@ void PlaneSearch::finish_fit() noexcept {
   }
   const FittedPlane fitted = fit_plane(sums_);
   sums_ = {};
-  const double offset = fitted.normal.dot(around_ + fitted.mean);
+  const double offset = fitted.normal.dot(sum_origin_ + fitted.mean);
   best_ = {static_cast<float>(fitted.normal.x()), static_cast<float>(fitted.normal.y()),
            static_cast<float>(fitted.normal.z()), static_cast<float>(offset)};
   if (++fits_ < k_plane_fits) return;
@@ -184,7 +184,7 @@ void PlaneSearch::finish_fit() noexcept {
   phase_ = Phase::take;
 }
 
-void PlaneSearch::take_points(int end) noexcept {
+void PlaneSearch::assign_points(int end) noexcept {
   for (; at_ < end; ++at_) {
     if (!is_on(best_, free_[at_])) continue;
     plane_of_[free_[at_]] = static_cast<std::uint8_t>(count_);

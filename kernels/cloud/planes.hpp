@@ -32,15 +32,15 @@ inline constexpr int k_plane_fits = 5;
 // scored; per call, including the change of phase.
 inline constexpr int k_plane_list_steps = 6, k_plane_draw_steps = 24, k_plane_fit_steps = 10,
                      k_plane_take_steps = 6, k_plane_try_steps = 24, k_plane_score_steps = 2,
-                     k_plane_turn_steps = 256;
+                     k_plane_call_steps = 256;
 
 struct PlaneSettings {
   PlaneGate gate;
   int planes_max = 8;
   int points_min = 500;
-  int tries = 4096;
+  int candidates_max = 4096;
   int scored_max = 256;
-  std::uint64_t seed = 1;
+  std::uint64_t random_seed = 1;
 };
 
 // normal . p = offset_m
@@ -72,7 +72,7 @@ class PlaneSearch {
   // Steps of the last call of step(); they exceed its limit by at most steps_max().
   [[nodiscard]] int steps() const noexcept { return steps_; }
   [[nodiscard]] static constexpr int steps_max() noexcept {
-    return k_plane_turn_steps + k_plane_score_steps * k_plane_sample + k_plane_try_steps;
+    return k_plane_call_steps + k_plane_score_steps * k_plane_sample + k_plane_try_steps;
   }
 
   [[nodiscard]] int count() const noexcept { return count_; }
@@ -94,7 +94,7 @@ class PlaneSearch {
   [[nodiscard]] bool is_on(const CandidatePlane& candidate, int point) const noexcept;
   void add_to_fit(int end) noexcept;
   void finish_fit() noexcept;
-  void take_points(int end) noexcept;
+  void assign_points(int end) noexcept;
   void next_phase() noexcept;
 
   PlaneSettings settings_;
@@ -105,7 +105,7 @@ class PlaneSearch {
   int free_count_ = 0, sample_size_ = 0, scored_ = 0, best_score_ = 0, fits_ = 0;
   CandidatePlane best_;
   PlaneSums sums_;
-  Vector3 around_ = Vector3::Zero();  // origin of the sums' coordinates
+  Vector3 sum_origin_ = Vector3::Zero();  // origin of the sums' coordinates
   Column<std::int32_t> free_;
   Column<std::uint8_t> plane_of_;
   PlaneSample sample_;

@@ -22,7 +22,7 @@ void RadiusOutlier::begin(const PointCloud& points) noexcept {
   cloud_ = &points;
   grid_.begin(points, settings_.radius_m);
   walk_.begin();
-  dropped_ = undecided_ = 0;
+  dropped_ = candidates_exceeded_ = 0;
 }
 
 // Returns true if enough other points are near. `near` counts the point itself too.
@@ -30,15 +30,16 @@ bool RadiusOutlier::has_neighbours(int point) noexcept {
   const float* const xs = grid_.x();
   const float* const ys = grid_.y();
   const float* const zs = grid_.z();
-  const FourFloats x = all_four(xs[point]), y = all_four(ys[point]), z = all_four(zs[point]);
-  const FourFloats limit = all_four(settings_.radius_m * settings_.radius_m);
+  const FourFloats x = broadcast_four(xs[point]), y = broadcast_four(ys[point]),
+                   z = broadcast_four(zs[point]);
+  const FourFloats limit = broadcast_four(settings_.radius_m * settings_.radius_m);
   int left = settings_.candidates_max, near = 0;
-  looked_at_ = 0;
+  compared_ = 0;
   for (const NeighbourSweep::Row& row : walk_.rows()) {
     for (int i = row.begin; i < row.end; i += 4) {
       if (left <= 0) {
-        ++undecided_;
-        looked_at_ = settings_.candidates_max;
+        ++candidates_exceeded_;
+        compared_ = settings_.candidates_max;
         return false;
       }
       const FourFloats dx = load_four(xs + i) - x, dy = load_four(ys + i) - y,
@@ -46,7 +47,7 @@ bool RadiusOutlier::has_neighbours(int point) noexcept {
       const FourMasks within = (dx * dx + dy * dy) + dz * dz <= limit;
       near += count_of(within & first_lanes(std::min(row.end - i, left)));
       left -= 4;
-      looked_at_ = settings_.candidates_max - left;
+      compared_ = settings_.candidates_max - left;
       if (near > settings_.neighbours_min) return true;
     }
   }
@@ -59,17 +60,17 @@ bool RadiusOutlier::step(SliceSize most, PointCloud& kept) noexcept {
       grid_, most, [] { return 0; },
       [&](int point) {
         if (has_neighbours(point)) {
-          const float weight = cloud_->weight[grid_.place_in_cloud(point)];
+          const float weight = cloud_->weight[grid_.index_in_cloud(point)];
           if (!kept.add(grid_.x()[point], grid_.y()[point], grid_.z()[point], weight)) ++dropped_;
         }
-        return k_outlier_steps + k_candidate_steps * looked_at_;
+        return k_outlier_steps + k_candidate_steps * compared_;
       });
 }
 
 Reason RadiusOutlier::reason() const noexcept {
   if (!prepared_) return Reason::not_prepared;
   if (dropped() > 0) return Reason::cloud_full;
-  return undecided_ > 0 ? Reason::search_full : Reason::none;
+  return candidates_exceeded_ > 0 ? Reason::search_full : Reason::none;
 }
 
 }  // namespace glint

@@ -48,7 +48,7 @@ class RadiusOutlier {
   // Discarded points: `kept` or the grid was full; beyond the grid; undecided.
   [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
   [[nodiscard]] int out_of_range() const noexcept { return grid_.out_of_range(); }
-  [[nodiscard]] int undecided() const noexcept { return undecided_; }
+  [[nodiscard]] int candidates_exceeded() const noexcept { return candidates_exceeded_; }
   // none; cloud_full; search_full (some undecided); not_prepared.
   [[nodiscard]] Reason reason() const noexcept;
 
@@ -60,7 +60,7 @@ class RadiusOutlier {
   NeighbourWalk walk_;
   const PointCloud* cloud_ = nullptr;
   bool prepared_ = false;
-  int dropped_ = 0, undecided_ = 0, looked_at_ = 0;
+  int dropped_ = 0, candidates_exceeded_ = 0, compared_ = 0;
 };
 
 }  // namespace glint

@@ -11,10 +11,10 @@
 namespace glint {
 
 enum BlobFlag : std::uint8_t {
-  k_blob_touches_edge = 1,   // cut by the frame's border
-  k_blob_saturated = 2,      // at least one pixel at the sensor's maximum
-  k_blob_has_neighbour = 4,  // light of another blob two pixels beside it
-  k_blob_uneven = 8,         // box is not that of a complete disc: merged or partially occluded
+  k_blob_touches_edge = 1,       // cut by the frame's border
+  k_blob_saturated = 2,          // at least one pixel at the sensor's maximum
+  k_blob_has_neighbour = 4,      // light of another blob two pixels beside it
+  k_blob_partial_or_merged = 8,  // box is not that of a complete disc: merged or partially occluded
 };
 
 struct Blob {

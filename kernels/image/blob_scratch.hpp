@@ -20,7 +20,7 @@ struct Component {
 };
 
 // A run as an interval in row-major order.
-struct PlacedRun {
+struct RasterRun {
   std::uint32_t begin = 0, end = 0;  // row << 16 | column; half open
 
   [[nodiscard]] int y() const { return static_cast<int>(begin >> 16); }
@@ -29,7 +29,7 @@ struct PlacedRun {
 };
 
 struct BlobScratch {
-  std::array<PlacedRun, k_runs_max> runs;
+  std::array<RasterRun, k_runs_max> runs;
   std::array<std::uint16_t, k_runs_max> parent;  // union-find: of a run, an earlier connected run
                                                  // or itself; finally its component
   std::array<std::uint16_t, k_runs_max> next_run;

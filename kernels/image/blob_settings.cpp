@@ -9,9 +9,9 @@
 namespace glint {
 namespace {
 
-constexpr double k_least_visible = 0.3;  // of the disc: a marker two thirds occluded is of no use
-constexpr double k_most_visible = 1.5;   // stray light and motion blur
-constexpr double k_blur_px = 1.0;        // added by the lens to a small disc's radius
+constexpr double k_visible_min = 0.3;  // of the disc: a marker two thirds occluded is of no use
+constexpr double k_visible_max = 1.5;  // stray light and motion blur
+constexpr double k_blur_px = 1.0;      // added by the lens to a small disc's radius
 constexpr double k_area_max_px = double{k_width_max} * k_height_max;
 
 }  // namespace
@@ -24,12 +24,12 @@ SizeGate size_gate(double radius_m, double range_min_m, double range_max_m,
   }
   const double far_px = focal_px * radius_m / range_max_m;
   const double near_px = focal_px * radius_m / range_min_m + k_blur_px;
-  const double least =
-      std::clamp(k_least_visible * std::numbers::pi * far_px * far_px, 1.0, k_area_max_px);
-  const double most =
-      std::clamp(k_most_visible * std::numbers::pi * near_px * near_px, 1.0, k_area_max_px);
-  gate.min_area_px = static_cast<std::uint32_t>(least);
-  gate.max_area_px = static_cast<std::uint32_t>(most) + 1;
+  const double area_min =
+      std::clamp(k_visible_min * std::numbers::pi * far_px * far_px, 1.0, k_area_max_px);
+  const double area_max =
+      std::clamp(k_visible_max * std::numbers::pi * near_px * near_px, 1.0, k_area_max_px);
+  gate.min_area_px = static_cast<std::uint32_t>(area_min);
+  gate.max_area_px = static_cast<std::uint32_t>(area_max) + 1;
   return gate;
 }
 
@@ -41,9 +41,10 @@ MarkerSizes marker_sizes(const MarkerOptics& optics) noexcept {
     return sizes;
   const auto sizes_between = [&](double from_m, double to_m) {
     const double radius_px = optics.focal_px * optics.radius_min_m / to_m;
-    const double least = optics.visible_part_min * std::numbers::pi * radius_px * radius_px;
+    const double area_min = optics.visible_part_min * std::numbers::pi * radius_px * radius_px;
     SizeGate gate = size_gate(optics.radius_max_m, from_m, to_m, optics.focal_px);
-    gate.min_area_px = static_cast<std::uint32_t>(std::clamp(std::ceil(least), 1.0, k_area_max_px));
+    gate.min_area_px =
+        static_cast<std::uint32_t>(std::clamp(std::ceil(area_min), 1.0, k_area_max_px));
     return gate;
   };
   sizes.known = true;

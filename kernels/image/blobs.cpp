@@ -25,7 +25,7 @@ int gather_candidates(const BlobSettings& settings, BlobScratch& scratch) {
   return candidates;
 }
 
-void judge_candidates(const Frame& frame, const BlobSettings& settings, BlobScratch& scratch,
+void score_candidates(const Frame& frame, const BlobSettings& settings, BlobScratch& scratch,
                       int candidates) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(candidates); ++i) {
     const Component& component = scratch.components[scratch.candidate[i]];
@@ -64,11 +64,11 @@ Blob blob_of(const Frame& frame, const Component& component, const Centroid& cen
   blob.peak = centroid.peak;
   const bool cut_x = blob.x0 == 0 || blob.x1 >= frame.width();
   const bool cut_y = blob.y0 == 0 || blob.y1 >= frame.height();
-  const bool uneven = is_uneven(component);
+  const bool uneven = is_partial_or_merged(component);
   if (cut_x || cut_y) blob.flags |= k_blob_touches_edge;
   if (blob.peak >= settings.saturated_from) blob.flags |= k_blob_saturated;
-  if (centroid.beside_bright) blob.flags |= k_blob_has_neighbour;
-  if (uneven) blob.flags |= k_blob_uneven;
+  if (centroid.has_bright_rim) blob.flags |= k_blob_has_neighbour;
+  if (uneven) blob.flags |= k_blob_partial_or_merged;
   blob.variance_px2 = centroid_variance(centroid, component, settings);
   if (cut_x || cut_y || uneven) {
     const std::array<float, 2> shape = shape_variance(component, cut_x, cut_y);
@@ -94,37 +94,37 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   find_components(bands, scratch, limits.runs_per_band);
   work.runs = scratch.run_count;
   int candidates = gather_candidates(settings, scratch);
-  const int most = std::clamp(limits.blobs, 0, k_blobs_max);
-  if (candidates > most) {
+  const int blobs_max = std::clamp(limits.blobs, 0, k_blobs_max);
+  if (candidates > blobs_max) {
     out.reason = Reason::blobs_full;
     if (out.incomplete == Reason::none) out.incomplete = Reason::blobs_full;
-    out.left_out = static_cast<std::uint32_t>(candidates - most);
+    out.left_out = static_cast<std::uint32_t>(candidates - blobs_max);
     const auto markers = static_cast<std::size_t>(limits.tools * limits.markers_per_tool);
     BlobSearch within = search;
     within.predicted_px = search.predicted_px.first(std::min(search.predicted_px.size(), markers));
-    judge_candidates(frame, settings, scratch, candidates);
-    work.distances = keep_nearest(within, scratch, candidates, most);
-    candidates = most;
+    score_candidates(frame, settings, scratch, candidates);
+    work.distances = select_nearest(within, scratch, candidates, blobs_max);
+    candidates = blobs_max;
   }
   out.dropped = static_cast<std::uint32_t>(scratch.component_count - candidates);
   sort_by_rows(scratch, candidates);
-  SharedBudget budget(limits.centroid_pixels_a_blob, limits.blobs, candidates);
+  SharedBudget budget(limits.centroid_pixels_per_blob, limits.blobs, candidates);
   for (int i = 0; i < candidates; ++i) {
     const Component& component = scratch.components[scratch.candidate[static_cast<std::size_t>(i)]];
-    const int most_pixels = budget.most_for_next();
+    const int pixels_max = budget.next_max();
     const bool small = fits_grown_box(component);
     const int pixels = small ? grown_box(frame, component).pixels() : 0;
-    const bool paid = pixels <= most_pixels;
-    if (paid) budget.spend(pixels);
-    if (!paid) out.reason = Reason::blobs_full;
-    const Centroid centroid = small && paid
+    const bool within_budget = pixels <= pixels_max;
+    if (within_budget) budget.spend(pixels);
+    if (!within_budget) out.reason = Reason::blobs_full;
+    const Centroid centroid = small && within_budget
                                   ? grown_centroid(frame, scratch, component, settings.threshold)
                                   : binary_centroid(frame, scratch, component);
     out.items[static_cast<std::size_t>(out.count++)] =
         blob_of(frame, component, centroid, settings);
   }
   work.blobs = out.count;
-  work.pixels = limits.blobs * limits.centroid_pixels_a_blob - budget.left();
+  work.pixels = limits.blobs * limits.centroid_pixels_per_blob - budget.left();
   return work;
 }
 

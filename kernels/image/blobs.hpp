@@ -4,7 +4,7 @@
 //           If more than limits.blobs are found, nearest_kept.hpp selects those to keep: near
 //           predicted markers, near a focus that changes with the frame, with a small misfit. A
 //           blob has the grown centroid if its grown box costs at most its share of
-//           limits.centroid_pixels_a_blob. A larger box uses what the others leave, in row order
+//           limits.centroid_pixels_per_blob. A larger box uses what the others leave, in row order
 //           from the top; without enough budget the centroid is the plain mean.
 // Cost:     linear in runs; misfits and distances only when full (components x predictions);
 //           linear in the grown boxes' pixels.
@@ -50,7 +50,7 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   const int fours = (runs + 3) / 4;
   const int points = limits.tools * limits.markers_per_tool + 1;  // the predictions and the focus
   return {runs, fours * points, std::min(limits.blobs, runs),
-          limits.blobs * limits.centroid_pixels_a_blob};
+          limits.blobs * limits.centroid_pixels_per_blob};
 }
 
 }  // namespace glint

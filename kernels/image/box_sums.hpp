@@ -46,7 +46,7 @@ class BoxSums {
   template <class Pixel>
   void add_row(const Pixel* row, int width, const RowMasks& masks) {
     Pixel padded[64];
-    if (width < 8 * box_.eights) {  // a frame narrower than the box
+    if (width < 8 * box_.column_groups) {  // a frame narrower than the box
       std::memset(padded, 0, sizeof padded);
       std::memcpy(padded, row, static_cast<std::size_t>(width) * sizeof(Pixel));
       row = padded;
@@ -55,41 +55,41 @@ class BoxSums {
     Sums weight = weight_, x = x_, dark = dark_;
     Words pixels = pixels_, pixels_x = pixels_x_, dark_pixels = dark_pixels_, peak = peak_;
     Words bright = bright_rim_;
-    for (int eight = 0; eight < box_.eights; ++eight) {
-      const Words value = load(row + 8 * eight) ^ k_lowest;
+    for (int group = 0; group < box_.column_groups; ++group) {
+      const Words value = load(row + 8 * group) ^ k_lowest;
       const Words column =
-          Words{-32, -31, -30, -29, -28, -27, -26, -25} + static_cast<std::int16_t>(8 * eight);
-      const Words near = chosen(masks.near, eight);
+          Words{-32, -31, -30, -29, -28, -27, -26, -25} + static_cast<std::int16_t>(8 * group);
+      const Words near = lane_mask(masks.near, group);
       const Words near_value = value & near;
       weight += pair_products(near_value, one);
       x += pair_products(near_value, column);
       pixels -= near;
       pixels_x += column & near;
-      const Words rim = chosen(masks.rim, eight), above = value > threshold_;
+      const Words rim = lane_mask(masks.rim, group), above = value > threshold_;
       const Words dark_rim = rim & ~above;
       dark += pair_products(value & dark_rim, one);
       dark_pixels -= dark_rim;
       bright |= rim & above;
-      const Words held = near_value | (k_lowest & ~near);
-      peak = held > peak ? held : peak;
+      const Words masked_value = near_value | (k_lowest & ~near);
+      peak = masked_value > peak ? masked_value : peak;
     }
     weight_ = weight, x_ = x, dark_ = dark;
     pixels_ = pixels, pixels_x_ = pixels_x, dark_pixels_ = dark_pixels, peak_ = peak;
     bright_rim_ = bright;
-    weight_from_below_ += weight;
-    pixels_from_below_ += pixels;
+    weight_prefix_sum_ += weight;
+    pixels_prefix_sum_ += pixels;
   }
 
   [[nodiscard]] GrownSums total() const {
     GrownSums out;
     const std::int64_t x = 2 * box_.left + 65, y = 2 * box_.bottom + 1;  // of column 32, row bottom
-    const std::int64_t pixels_x = sum_of(pixels_x_), from_below = sum_of(pixels_from_below_);
+    const std::int64_t pixels_x = sum_of(pixels_x_), from_below = sum_of(pixels_prefix_sum_);
     out.pixels = sum_of(pixels_);
     out.pixels_x = x * out.pixels + 2 * pixels_x;
     out.pixels_y = y * out.pixels - 2 * from_below;
     out.weight = sum_of(weight_) + k_half * out.pixels;
     out.x = x * out.weight + 2 * (sum_of(x_) + k_half * pixels_x);
-    out.y = y * out.weight - 2 * (sum_of(weight_from_below_) + k_half * from_below);
+    out.y = y * out.weight - 2 * (sum_of(weight_prefix_sum_) + k_half * from_below);
     out.dark_pixels = sum_of(dark_pixels_);
     out.dark = sum_of(dark_) + k_half * out.dark_pixels;
     std::int16_t peak = peak_[0];
@@ -112,27 +112,27 @@ class BoxSums {
   static constexpr Words k_lowest = Words{} + std::int16_t{-32768};
 
   static Words load(const std::uint8_t* pixels) {
-    std::uint8_t eight __attribute__((vector_size(8)));
-    std::memcpy(&eight, pixels, sizeof eight);
-    return __builtin_convertvector(eight, Words);
+    std::uint8_t loaded __attribute__((vector_size(8)));
+    std::memcpy(&loaded, pixels, sizeof loaded);
+    return __builtin_convertvector(loaded, Words);
   }
   static Words load(const std::uint16_t* pixels) {
-    Words eight;
-    std::memcpy(&eight, pixels, sizeof eight);
-    return eight;
+    Words loaded;
+    std::memcpy(&loaded, pixels, sizeof loaded);
+    return loaded;
   }
 
   // Sets all bits of a lane if the bit of its column is set.
-  static Words chosen(std::uint64_t mask, int eight) {
+  static Words lane_mask(std::uint64_t mask, int group) {
     const Words bits = {1, 2, 4, 8, 16, 32, 64, 128};
-    const Words all = Words{} + static_cast<std::int16_t>(mask >> (8 * eight) & 0xFF);
+    const Words all = Words{} + static_cast<std::int16_t>(mask >> (8 * group) & 0xFF);
     return (all & bits) == bits;
   }
 
   GrownBox box_;
   Words threshold_;
-  Sums weight_{}, weight_from_below_{}, x_{}, dark_{};
-  Words pixels_{}, pixels_from_below_{}, pixels_x_{}, dark_pixels_{};
+  Sums weight_{}, weight_prefix_sum_{}, x_{}, dark_{};
+  Words pixels_{}, pixels_prefix_sum_{}, pixels_x_{}, dark_pixels_{};
   Words peak_ = k_lowest, bright_rim_{};
 };
 

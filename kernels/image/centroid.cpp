@@ -29,7 +29,7 @@ Centroid weighted(const ImageView<Pixel>& image, const BlobScratch& scratch,
                   const Component& component, std::int64_t threshold) {
   std::int64_t weights = 0, x_sum = 0, y_sum = 0;  // sums in half pixels: a centre is at 2 x + 1
   Pixel peak = 0;
-  for_each_run(scratch, component, [&](const PlacedRun& run) {
+  for_each_run(scratch, component, [&](const RasterRun& run) {
     const Pixel* row = image.row(run.y());
     for (int x = run.x0(); x < run.x1(); ++x) {
       peak = std::max(peak, row[x]);
@@ -51,7 +51,7 @@ Centroid binary(const ImageView<Pixel>& image, const BlobScratch& scratch,
                 const Component& component) {
   std::int64_t pixels = 0, x_sum = 0, y_sum = 0;
   Pixel peak = 0;
-  for_each_run(scratch, component, [&](const PlacedRun& run) {
+  for_each_run(scratch, component, [&](const RasterRun& run) {
     const int x0 = run.x0(), x1 = run.x1();
     const std::int64_t length = x1 - x0;
     const Pixel* row = image.row(run.y());
@@ -77,7 +77,7 @@ Centroid from_sums(const GrownSums& total, const Component& component, Plain pla
                                      total.y * n - total.dark * total.pixels_y,
                                      std::max<std::int64_t>(weight, 1));
   out.peak = total.peak;
-  out.beside_bright = total.bright_rim;
+  out.has_bright_rim = total.bright_rim;
   const double x = out.position_px.x(), y = out.position_px.y();
   const bool inside =
       x >= component.x0 && x <= component.x1 && y >= component.y0 && y <= component.y1;
@@ -86,7 +86,7 @@ Centroid from_sums(const GrownSums& total, const Component& component, Plain pla
     return out;
   }
   const auto pixels = static_cast<double>(total.pixels), dark_pixels = static_cast<double>(n);
-  out.light = static_cast<double>(weight) / dark_pixels;
+  out.intensity_sum = static_cast<double>(weight) / dark_pixels;
   out.background = static_cast<double>(total.dark) / dark_pixels;
   out.pixels = static_cast<std::int32_t>(total.pixels);
   out.dark_pixels = static_cast<std::int32_t>(n);
@@ -105,7 +105,7 @@ Centroid grown(const ImageView<Pixel>& image, const Frame& frame, const BlobScra
   std::array<std::uint64_t, k_grown_box_max + 6> own;
   const int top = component.y0 - 2, rows = component.y1 - component.y0;
   std::fill_n(own.begin(), rows + 6, 0);
-  for_each_run(scratch, component, [&](const PlacedRun& run) {
+  for_each_run(scratch, component, [&](const RasterRun& run) {
     const std::uint64_t ones = (std::uint64_t{1} << (run.x1() - run.x0())) - 1;
     own[static_cast<std::size_t>(run.y() - top)] |= ones << (run.x0() - box.left);
   });

@@ -25,10 +25,10 @@ struct Centroid {
   Vector2 position_px = Vector2::Zero();  // pixel centres at integer + 0.5
   // Maximum over the grown blob, raw; binary_centroid: over the ends and centres of its runs.
   std::uint16_t peak = 0;
-  bool beside_bright = false;  // a pixel around the grown blob is above the threshold
+  bool has_bright_rim = false;  // a pixel around the grown blob is above the threshold
   // Input of centroid_variance(); all 0 unless this is a grown centroid.
-  double light = 0;       // sum of reflectivity minus the background
-  double background = 0;  // mean of a pixel, raw
+  double intensity_sum = 0;  // sum of reflectivity minus the background
+  double background = 0;     // mean of a pixel, raw
   std::int32_t pixels = 0, dark_pixels = 0;
   Vector2 lever_px = Vector2::Zero();  // sum of the pixels' offsets from the position
 };

@@ -12,15 +12,15 @@ namespace {
 // 1/120 - 1/144 for uniform u. A disc of diameter D has 4 D such pixels; half of the sum of the
 // squared normals is along each axis. Simulated spheres have half of that variance, because errors
 // of adjacent pixels differ, and 1 / r^3 of it for a rim blurred over r pixels.
-constexpr double k_rim_miss = 0.5 * 4 * (1.0 / 120 - 1.0 / 144) / 2;
+constexpr double k_rim_sampling_variance = 0.5 * 4 * (1.0 / 120 - 1.0 / 144) / 2;
 // If saturation clips a pixel from u = 1 - q on, its light has a variance of q^2 / 12, at half a
 // diameter from the centre: 4 D (q^2 / 12) (D^2 / 8). Simulated spheres have two thirds of that.
-constexpr double k_rim_clip = 0.63 / 24;
+constexpr double k_rim_clipping_variance = 0.63 / 24;
 // Smallest q of a saturated rim: motion blur widens the rim and so hides the clipping.
-constexpr double k_clip_least = 1.0 / 3;
+constexpr double k_clip_min = 1.0 / 3;
 // Above this ratio of threshold to signal, too little of the rim is left to estimate its width.
-constexpr double k_rim_seen_below = 0.25;
-constexpr double k_rim_width_least = 0.5;
+constexpr double k_rim_threshold_ratio_max = 0.25;
+constexpr double k_rim_width_min = 0.5;
 
 // Light that a neighbour two pixels away may add to the mask: pixels just below the threshold, on
 // one side.
@@ -33,11 +33,11 @@ struct Disc {
   explicit Disc(double area_px)
       : area(std::max(area_px, 1.0)), diameter(std::sqrt(area * (4 / std::numbers::pi))) {}
 
-  [[nodiscard]] double missed(double rim_width) const {
-    return k_rim_miss * diameter / (rim_width * rim_width * rim_width * area * area);
+  [[nodiscard]] double sampling_variance(double rim_width) const {
+    return k_rim_sampling_variance * diameter / (rim_width * rim_width * rim_width * area * area);
   }
   [[nodiscard]] double clipped(double part) const {
-    return k_rim_clip * part * part * diameter * diameter * diameter / (area * area);
+    return k_rim_clipping_variance * part * part * diameter * diameter * diameter / (area * area);
   }
 };
 
@@ -57,29 +57,30 @@ class Variance {
     const double uneven = squared(noise.proportional);
     dark_ = squared(noise.read_counts) + noise.shot_counts * c_.background +
             uneven * squared(c_.background);
-    bright_ = c_.light * (noise.shot_counts + uneven * signal_);
+    bright_ = c_.intensity_sum * (noise.shot_counts + uneven * signal_);
   }
 
   // The mean squared offset of a disc's pixels from its centre is (size / 4)^2 along an axis.
-  [[nodiscard]] float along(const Axis& axis) const {
+  [[nodiscard]] float variance_along(const Axis& axis) const {
     const double own = squared(axis.size) / 16, grown = squared(axis.size + 2) / 16;
     const double noisy =
         dark_ * (c_.pixels * grown + squared(axis.lever) / c_.dark_pixels) + bright_ * own;
     const double pulled =
-        c_.beside_bright ? k_neighbour_pixels * threshold_ * (0.5 * axis.size + 1) : 0;
-    return static_cast<float>(rim_ + (noisy + squared(pulled)) / squared(c_.light));
+        c_.has_bright_rim ? k_neighbour_pixels * threshold_ * (0.5 * axis.size + 1) : 0;
+    return static_cast<float>(rim_ + (noisy + squared(pulled)) / squared(c_.intensity_sum));
   }
 
  private:
   // A rim r pixels wide has 2 D r more pixels above zero than the area of its light. A fraction of
   // these, twice the ratio of threshold to signal, is below the threshold.
   [[nodiscard]] double rim(double area_px, bool saturated) const {
-    const Disc lit(c_.light / signal_);
+    const Disc lit(c_.intensity_sum / signal_);
     const double share = threshold_ / signal_;
-    if (share >= k_rim_seen_below) return saturated ? lit.clipped(1) : lit.missed(1);
+    if (share >= k_rim_threshold_ratio_max)
+      return saturated ? lit.clipped(1) : lit.sampling_variance(1);
     const double width = (area_px - lit.area) / (2 * lit.diameter * (1 - 2 * share));
-    return saturated ? lit.clipped(std::clamp(1 - width, k_clip_least, 1.0))
-                     : lit.missed(std::max(width, k_rim_width_least));
+    return saturated ? lit.clipped(std::clamp(1 - width, k_clip_min, 1.0))
+                     : lit.sampling_variance(std::max(width, k_rim_width_min));
   }
 
   const Centroid& c_;
@@ -97,14 +98,16 @@ std::array<float, 2> centroid_variance(const Centroid& centroid, const Component
     return {all, all};
   }
   const Variance variance(centroid, component, settings);
-  return {
-      variance.along({static_cast<double>(component.x1 - component.x0), centroid.lever_px.x()}),
-      variance.along({static_cast<double>(component.y1 - component.y0), centroid.lever_px.y()})};
+  return {variance.variance_along(
+              {static_cast<double>(component.x1 - component.x0), centroid.lever_px.x()}),
+          variance.variance_along(
+              {static_cast<double>(component.y1 - component.y0), centroid.lever_px.y()})};
 }
 
 std::array<float, 2> shape_variance(const Component& component, bool cut_x, bool cut_y) noexcept {
   const auto missing = static_cast<float>(excess_px(component)) / 2;
-  const float x = missing + (cut_x ? k_cut_px : 0), y = missing + (cut_y ? k_cut_px : 0);
+  const float x = missing + (cut_x ? k_border_sigma_px : 0),
+              y = missing + (cut_y ? k_border_sigma_px : 0);
   return {x * x, y * y};
 }
 

@@ -31,24 +31,24 @@ namespace glint {
 
 // Limits of the excess (longer minus shorter side) of a complete disc's box, in pixels and relative
 // to the shorter side. A disc with two pixels of motion blur stays below.
-inline constexpr int k_excess_least_px = 3;
-inline constexpr double k_excess_least_part = 0.75;
+inline constexpr int k_excess_min_px = 3;
+inline constexpr double k_excess_min_ratio = 0.75;
 // Standard deviation of a centroid whose blob the frame's border cuts, even if its box is square.
-inline constexpr float k_cut_px = 1;
+inline constexpr float k_border_sigma_px = 1;
 
 [[nodiscard]] constexpr int excess_px(const Component& component) {
   const int width = component.x1 - component.x0, height = component.y1 - component.y0;
   return width > height ? width - height : height - width;
 }
-[[nodiscard]] constexpr bool is_uneven(const Component& component) {
+[[nodiscard]] constexpr bool is_partial_or_merged(const Component& component) {
   const int width = component.x1 - component.x0, height = component.y1 - component.y0;
   const int shorter = width < height ? width : height;
-  return excess_px(component) >= k_excess_least_px &&
-         excess_px(component) > k_excess_least_part * shorter;
+  return excess_px(component) >= k_excess_min_px &&
+         excess_px(component) > k_excess_min_ratio * shorter;
 }
 
-// Variance to add if the border cuts the blob or is_uneven(): the centres of two merged discs, or
-// the centre of a half occluded one, are half the excess away.
+// Variance to add if the border cuts the blob or is_partial_or_merged(): the centres of two merged
+// discs, or the centre of a half occluded one, are half the excess away.
 [[nodiscard]] std::array<float, 2> shape_variance(const Component& component, bool cut_x,
                                                   bool cut_y) noexcept GLINT_NONBLOCKING;
 

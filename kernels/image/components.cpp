@@ -11,7 +11,7 @@ static_assert(k_runs_max <= 0xFFFF);
 
 constexpr std::uint32_t k_row = 1u << 16;
 
-PlacedRun placed(const Run& run) {
+RasterRun raster_run(const Run& run) {
   const std::uint32_t row = run.y * k_row;
   return {row | run.x0, row | run.x1};
 }
@@ -31,14 +31,14 @@ Index root_of(BlobScratch& scratch, Index run) {
 // Joins each run with all runs that it touches in the row above.
 void join_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int runs_per_band) {
   const std::size_t band_count = std::min<std::size_t>(bands.size(), k_row_bands);
-  const int most = std::clamp(runs_per_band, 0, k_runs_per_band_max);
-  PlacedRun* const runs = scratch.runs.data();
+  const int runs_max = std::clamp(runs_per_band, 0, k_runs_per_band_max);
+  RasterRun* const runs = scratch.runs.data();
   int count = 0;
   int above = 0;  // first run that may still touch; runs of the same row never touch
   for (std::size_t band = 0; band < band_count; ++band) {
-    const int in_band = std::clamp(bands[band]->count, 0, most);
+    const int in_band = std::clamp(bands[band]->count, 0, runs_max);
     for (int i = 0; i < in_band; ++i) {
-      const PlacedRun run = placed(bands[band]->items[static_cast<std::size_t>(i)]);
+      const RasterRun run = raster_run(bands[band]->items[static_cast<std::size_t>(i)]);
       const auto self = static_cast<Index>(count++);
       runs[self] = run;
       scratch.parent[self] = self;
@@ -64,7 +64,7 @@ void gather_components(BlobScratch& scratch) {
   int count = 0;
   for (int i = 0; i < run_count; ++i) {
     const auto self = static_cast<Index>(i);
-    const PlacedRun run = scratch.runs[self];
+    const RasterRun run = scratch.runs[self];
     const auto y0 = static_cast<std::uint16_t>(run.y()), y1 = static_cast<std::uint16_t>(y0 + 1);
     const auto x0 = static_cast<std::uint16_t>(run.x0()), x1 = static_cast<std::uint16_t>(run.x1());
     const std::uint32_t length = run.end - run.begin;

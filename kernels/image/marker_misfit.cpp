@@ -37,7 +37,7 @@ int steps_below(std::uint64_t less, std::uint64_t more) {
          static_cast<int>(4 * less < more);
 }
 
-bool is_dim(const Frame& frame, const Component& component, std::uint16_t threshold) {
+bool has_low_contrast(const Frame& frame, const Component& component, std::uint16_t threshold) {
   const int x = (component.x0 + component.x1 - 1) / 2, y = (component.y0 + component.y1 - 1) / 2;
   const int level = frame.reflectivity_8.empty() ? int{frame.reflectivity_16.row(y)[x]}
                                                  : int{frame.reflectivity_8.row(y)[x]};
@@ -48,11 +48,11 @@ bool is_dim(const Frame& frame, const Component& component, std::uint16_t thresh
 
 int marker_misfit(const Frame& frame, const Component& component,
                   const BlobSettings& settings) noexcept {
-  int steps = is_dim(frame, component, settings.threshold) ? 1 : 0;
+  int steps = has_low_contrast(frame, component, settings.threshold) ? 1 : 0;
   const int width = component.x1 - component.x0, height = component.y1 - component.y0;
   const std::uint64_t area = component.area_px;
   const auto box = static_cast<std::uint64_t>(width * height);
-  if (is_uneven(component) || 2 * area < box) ++steps;
+  if (is_partial_or_merged(component) || 2 * area < box) ++steps;
   if (settings.sizes.known) {
     const SizeGate gate = expected_sizes(frame, component, settings.sizes);
     steps += steps_below(area, gate.min_area_px) + steps_below(gate.max_area_px, area);

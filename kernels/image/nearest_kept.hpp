@@ -13,8 +13,8 @@
 // Accuracy: exact: squared distances in half pixels are integers below 2^23, and below 2^31 with
 //           misfit. Distances from 2^23 on are equal: a prediction far outside the frame, or
 //           opposite corners of the largest frame.
-// Source:   order statistic without sorting: the largest distance with fewer than `kept` below it,
-//           by bisection of its bits; Knuth, "The Art of Computer Programming", vol. 3, section
+// Source:   order statistic without sorting: the largest distance with fewer than `budget` below
+//           it, by bisection of its bits; Knuth, "The Art of Computer Programming", vol. 3, section
 //           6.2.1. The golden ratio's gaps: the same, section 6.4, theorem S.
 #pragma once
 
@@ -37,18 +37,18 @@ struct BlobSearch {
   std::uint32_t turn = 0;                   // frame number: selects the focus
 };
 
-// The part of the budget `kept` for candidates near one of `predictions` markers.
-[[nodiscard]] constexpr int kept_near_predictions(const BlobSearch& search, int predictions,
-                                                  int kept) {
+// The part of `budget` for candidates near one of `predictions` markers.
+[[nodiscard]] constexpr int budget_near_predictions(const BlobSearch& search, int predictions,
+                                                    int budget) {
   if (predictions == 0) return 0;
-  if (!search.everywhere) return kept;
-  const int half = kept / 2 > predictions ? kept / 2 : predictions;
-  return half < kept ? half : kept;
+  if (!search.everywhere) return budget;
+  const int half = budget / 2 > predictions ? budget / 2 : predictions;
+  return half < budget ? half : budget;
 }
 
-// Keeps `kept` of the first `candidates` of scratch.candidate, in their order; reads and overwrites
-// scratch.misfit. Returns the number of computed groups of four distances.
-int keep_nearest(const BlobSearch& search, BlobScratch& scratch, int candidates,
-                 int kept) noexcept GLINT_NONBLOCKING;
+// Keeps `budget` of the first `candidates` of scratch.candidate, in their order; reads and
+// overwrites scratch.misfit. Returns the number of computed groups of four distances.
+int select_nearest(const BlobSearch& search, BlobScratch& scratch, int candidates,
+                   int budget) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -38,8 +38,8 @@ Rois clipped(const Rois& rois, const Limits& limits, int width, int top, int bot
 // Calls scan(pixels of the row, y, x0, x1) for each row segment inside an ROI until it returns
 // false. Returns the number of ROIs times rows.
 template <class Pixel, class Scan>
-int for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
-                     RowBand band, Scan scan) {
+int for_each_row_segment(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
+                         RowBand band, Scan scan) {
   const int top = image.height * band.index / band.count;
   const int bottom = image.height * (band.index + 1) / band.count;
   const Rois cut = clipped(rois, limits, image.width, top, bottom);
@@ -56,7 +56,7 @@ int for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, const Limi
   return (bottom - top) * cut.count;
 }
 
-bool usable(const Frame& frame, RowBand band, const Limits& limits) {
+bool is_valid_input(const Frame& frame, RowBand band, const Limits& limits) {
   const int bytes = frame.reflectivity_16.empty() ? 1 : 2;
   return band.count > 0 && band.index >= 0 && band.index < band.count &&
          frame.width() <= std::min(limits.width, k_width_max) &&
@@ -76,7 +76,7 @@ ThresholdWork scan_fast(const ImageView<Pixel>& image, const Rois& rois, const L
   const auto scan = [&](const Pixel* row, int y, int x0, int x1) {
     work.blocks += (x1 - x0 + block - 1) / block;
     const Pixel* ahead = image.row(std::min(y + k_rows_ahead, image.height - 1));
-    writer.begin_stretch(y, x0);
+    writer.begin_segment(y, x0);
     int x = x0;
     for (; x + block <= x1; x += block) {
       __builtin_prefetch(ahead + x);
@@ -86,10 +86,10 @@ ThresholdWork scan_fast(const ImageView<Pixel>& image, const Rois& rois, const L
       __builtin_prefetch(ahead + x);
       if (!writer.add(x, bright_mask(row, image.width, x, x1, threshold))) return false;
     }
-    writer.end_stretch(x1);
+    writer.end_segment(x1);
     return true;
   };
-  work.stretches = for_each_stretch(image, rois, limits, band, scan);
+  work.stretches = for_each_row_segment(image, rois, limits, band, scan);
   return work;
 }
 
@@ -99,7 +99,7 @@ ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t
                              RowBand band, Runs& out, const Limits& limits) noexcept {
   RunWriter writer(out, limits.runs_per_band);
   ThresholdWork work;
-  if (!usable(frame, band, limits)) return work;
+  if (!is_valid_input(frame, band, limits)) return work;
   if (!frame.reflectivity_16.empty()) {
     work = scan_fast(frame.reflectivity_16, rois, limits, threshold, band, writer);
   } else if (!frame.reflectivity_8.empty() && threshold < 0xFF) {

@@ -22,7 +22,7 @@ class RunWriter {
   }
 
   // Starts a row segment at pixel x0 of row y. Requires segments in row-major order.
-  void begin_stretch(int y, int x0) {
+  void begin_segment(int y, int x0) {
     if (edges_ > 0) {
       const Run& last = item(edges_ - 1);
       if (last.y == y && last.x1 == x0) {  // continues the previous run
@@ -49,7 +49,7 @@ class RunWriter {
   }
 
   // x1: one past the last pixel of the segment.
-  void end_stretch(int x1) {
+  void end_segment(int x1) {
     if ((edges_ & 1) != 0) put_edge(x1);
   }
 

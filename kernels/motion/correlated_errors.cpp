@@ -28,14 +28,14 @@ double halves_variance(double x) {
 
 }  // namespace
 
-Matrix6 of_mean(const CorrelatedErrors& errors, const CorrelationTimes& times,
-                double window_s) noexcept {
+Matrix6 covariance_of_mean(const CorrelatedErrors& errors, const CorrelationTimes& times,
+                           double window_s) noexcept {
   return mean_variance(correlations(window_s, times.fast_s)) * errors.fast +
          mean_variance(correlations(window_s, times.slow_s)) * errors.slow;
 }
 
-Matrix6 of_halves(const CorrelatedErrors& errors, const CorrelationTimes& times,
-                  double window_s) noexcept {
+Matrix6 halves_covariance(const CorrelatedErrors& errors, const CorrelationTimes& times,
+                          double window_s) noexcept {
   return halves_variance(correlations(0.5 * window_s, times.fast_s)) * errors.fast +
          halves_variance(correlations(0.5 * window_s, times.slow_s)) * errors.slow;
 }

@@ -1,8 +1,9 @@
 // Covariance of a window's mean under correlated measurement errors (Gauss-Markov processes).
 //
 // What:     the sum of two first-order Gauss-Markov processes, a fast and a slow one, each with a
-//           covariance and a correlation time. of_mean: covariance of their mean over a window;
-//           of_halves: of the difference between the means of the window's two halves.
+//           covariance and a correlation time. covariance_of_mean: covariance of their mean over a
+//           window; halves_covariance: of the difference between the means of the window's two
+//           halves.
 // Cost:     two exponentials and two sums of matrices.
 // Worst:    data independent.
 // Accuracy: exact for a continuous mean; frames further apart than fast_s average out less.
@@ -26,9 +27,11 @@ struct CorrelationTimes {
   double fast_s = 0.5, slow_s = 20;
 };
 
-[[nodiscard]] Matrix6 of_mean(const CorrelatedErrors& errors, const CorrelationTimes& times,
-                              double window_s) noexcept GLINT_NONBLOCKING;
-[[nodiscard]] Matrix6 of_halves(const CorrelatedErrors& errors, const CorrelationTimes& times,
-                                double window_s) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] Matrix6 covariance_of_mean(const CorrelatedErrors& errors,
+                                         const CorrelationTimes& times,
+                                         double window_s) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] Matrix6 halves_covariance(const CorrelatedErrors& errors,
+                                        const CorrelationTimes& times,
+                                        double window_s) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

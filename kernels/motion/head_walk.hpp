@@ -28,32 +28,33 @@ struct HeadNoise {
   double angle_per_turn_s = 0.02;      // rad of error per rad/s
   double motion_correlation_s = 0.4;
   double pivot_m = 0.5;
-  double stamp_s = 0.005;  // time offset of head poses against frames: see world_errors.hpp
+  double time_stamp_s = 0.005;  // time offset of head poses against frames: see world_errors.hpp
 };
 
 // Transition of the error over a time step, about one point of the world.
-struct WalkedError {
-  double kept = 0;                      // fraction of the previous error
-  Matrix6 at_length = Matrix6::Zero();  // stationary covariance
-  [[nodiscard]] Matrix6 fresh() const { return (1 - kept * kept) * at_length; }
+struct ErrorTransition {
+  double kept = 0;                                  // fraction of the previous error
+  Matrix6 stationary_covariance = Matrix6::Zero();  // stationary covariance
+  [[nodiscard]] Matrix6 added() const { return (1 - kept * kept) * stationary_covariance; }
 };
 
-class HeadWalk {
+class HeadErrorProcess {
  public:
   // Requires each valid head pose, in order of time. Returns the seconds since the previous one;
   // for the first, a time longer than any correlation time.
   double observe(const HeadPose& head, const HeadNoise& noise) noexcept GLINT_NONBLOCKING;
   // The transition over `seconds` about `point_m`, at the newest head pose and speed.
-  [[nodiscard]] WalkedError over(double seconds, const Vector3& point_m,
-                                 const HeadNoise& noise) const noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] ErrorTransition transition_over(double seconds, const Vector3& point_m,
+                                                const HeadNoise& noise) const noexcept
+      GLINT_NONBLOCKING;
   // Time stamps restart: discards the previous head pose.
   void restart_clock() noexcept { has_head_ = false; }
 
  private:
   bool has_head_ = false;
-  StampedPose head_;   // as received from the headset
+  TimedPose head_;     // as received from the headset
   Velocity velocity_;  // along the world's axes at the camera, smoothed over k_jitter_s
-  double speed_m_s_ = 0, turn_rad_s_ = 0;  // its norms, smoothed over motion_correlation_s
+  double speed_m_s_ = 0, angular_speed_rad_s_ = 0;  // its norms, smoothed over motion_correlation_s
 };
 
 }  // namespace glint

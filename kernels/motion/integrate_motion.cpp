@@ -25,13 +25,13 @@ int motion(double seconds, N_Vector y, N_Vector derivative, void* user_data) {
   const Drive& drive = *static_cast<const Drive*>(user_data);
   const Values& s = State::of(y);
   Values& d = State::of(derivative);
-  const double kept = exponential(-drive.linear_damping * seconds);
-  const double angular_kept = exponential(-drive.angular_damping * seconds);
+  const double linear_decay = exponential(-drive.linear_damping * seconds);
+  const double angular_decay = exponential(-drive.angular_damping * seconds);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     d[i] = s[i + 3];
-    d[i + 3] = kept * drive.acceleration(axis);
-    d[i + 10] = angular_kept * drive.angular_acceleration(axis);
+    d[i + 3] = linear_decay * drive.acceleration(axis);
+    d[i + 10] = angular_decay * drive.angular_acceleration(axis);
   }
   const double qx = s[6], qy = s[7], qz = s[8], qw = s[9];
   const double wx = 0.5 * s[10], wy = 0.5 * s[11], wz = 0.5 * s[12];

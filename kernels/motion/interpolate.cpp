@@ -11,11 +11,11 @@ namespace {
 // Below this arc, rad, the sines' ratio equals u to rounding: its relative error is arc^2 / 6.
 constexpr double k_small_arc = 1e-8;
 
-double fraction(const StampedPose& a, const StampedPose& b, Time t) {
+double fraction(const TimedPose& a, const TimedPose& b, Time t) {
   return (t - a.time).seconds() / (b.time - a.time).seconds();
 }
 
-Pose between(const StampedPose& a, const StampedPose& b, double u) {
+Pose between(const TimedPose& a, const TimedPose& b, double u) {
   return {slerp(a.pose.rotation, b.pose.rotation, u),
           constant_velocity(a.pose.translation, b.pose.translation, u)};
 }
@@ -43,19 +43,18 @@ Quaternion slerp(const Quaternion& q0, const Quaternion& q1, double u) noexcept 
   return Quaternion(mixed).normalized();
 }
 
-Pose interpolate(const StampedPose& a, const StampedPose& b, Time t) noexcept {
+Pose interpolate(const TimedPose& a, const TimedPose& b, Time t) noexcept {
   if (b.time <= a.time) return b.pose;
   return between(a, b, std::clamp(fraction(a, b, t), 0.0, 1.0));
 }
 
-Pose extrapolate(const StampedPose& a, const StampedPose& b, Time t,
-                 Duration max_horizon) noexcept {
+Pose extrapolate(const TimedPose& a, const TimedPose& b, Time t, Duration max_horizon) noexcept {
   if (b.time <= a.time) return b.pose;
   const Time last = b.time + std::max(max_horizon, Duration{});
   return between(a, b, std::max(fraction(a, b, std::min(t, last)), 0.0));
 }
 
-Velocity velocity_between(const StampedPose& a, const StampedPose& b) noexcept {
+Velocity velocity_between(const TimedPose& a, const TimedPose& b) noexcept {
   Velocity velocity;
   if (b.time <= a.time) return velocity;
   const double gap = (b.time - a.time).seconds();

@@ -14,7 +14,7 @@
 
 namespace glint {
 
-struct StampedPose {
+struct TimedPose {
   Time time;
   Pose pose;
 };
@@ -36,17 +36,17 @@ struct Velocity {
                                double u) noexcept GLINT_NONBLOCKING;
 
 // Interpolates from a to b, clamped to both ends. Returns b if b.time <= a.time.
-[[nodiscard]] Pose interpolate(const StampedPose& a, const StampedPose& b,
+[[nodiscard]] Pose interpolate(const TimedPose& a, const TimedPose& b,
                                Time t) noexcept GLINT_NONBLOCKING;
 
 // Like interpolate, but extrapolates after b at the velocity from a to b, for at most max_horizon;
 // holds the pose after that. Returns b if b.time <= a.time.
-[[nodiscard]] Pose extrapolate(const StampedPose& a, const StampedPose& b, Time t,
+[[nodiscard]] Pose extrapolate(const TimedPose& a, const TimedPose& b, Time t,
                                Duration max_horizon) noexcept GLINT_NONBLOCKING;
 
 // Constant velocities that move a to b. Returns zero if b.time <= a.time.
-[[nodiscard]] Velocity velocity_between(const StampedPose& a,
-                                        const StampedPose& b) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] Velocity velocity_between(const TimedPose& a,
+                                        const TimedPose& b) noexcept GLINT_NONBLOCKING;
 
 // Rotation vector (axis times angle, |angle| <= pi) of a unit quaternion, and back.
 [[nodiscard]] Vector3 rotation_vector(const Quaternion& q) noexcept GLINT_NONBLOCKING;

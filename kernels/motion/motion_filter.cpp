@@ -16,24 +16,24 @@ void set_variance(MotionState& state, int block, double variance) {
   for (int i = 0; i < 3; ++i) state.covariance(block + i, block + i) = variance;
 }
 
-// p = F p for the three triples of translation or of rotation, the first of them at row `place`.
-// `turn` and `half_turn` propagate an earlier rotation error to the later time.
-void carry_rows(MotionCovariance& p, int place, const SingerStep& step, const Matrix3& turn,
-                const Matrix3& half_turn) {
+// p = F p for the three triples of translation or of rotation, the first of them at row `row`.
+// `rotation` and `half_rotation` propagate an earlier rotation error to the later time.
+void propagate_rows(MotionCovariance& p, int row, const SingerStep& step, const Matrix3& rotation,
+                    const Matrix3& half_rotation) {
   using Rows = Eigen::Matrix<double, 3, k_motion_size>;
-  const int speed = place + 3, acceleration = place + 6;
+  const int speed = row + 3, acceleration = row + 6;
   const Rows gathered = step.seconds * p.middleRows<3>(speed) +
-                        step.place_by_acceleration * p.middleRows<3>(acceleration);
-  const Rows turned = turn.lazyProduct(p.middleRows<3>(place));
-  p.middleRows<3>(place) = turned + half_turn.lazyProduct(gathered);
-  p.middleRows<3>(speed) += step.speed_by_acceleration * p.middleRows<3>(acceleration);
-  p.middleRows<3>(acceleration) *= step.acceleration_kept;
+                        step.position_by_acceleration * p.middleRows<3>(acceleration);
+  const Rows rotated_rows = rotation.lazyProduct(p.middleRows<3>(row));
+  p.middleRows<3>(row) = rotated_rows + half_rotation.lazyProduct(gathered);
+  p.middleRows<3>(speed) += step.velocity_by_acceleration * p.middleRows<3>(acceleration);
+  p.middleRows<3>(acceleration) *= step.acceleration_decay;
 }
 
-void add_noise(MotionCovariance& p, int place, const Matrix3& noise) {
+void add_noise(MotionCovariance& p, int row, const Matrix3& noise) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
-      for (int i = 0; i < 3; ++i) p(place + 3 * a + i, place + 3 * b + i) += noise(a, b);
+      for (int i = 0; i < 3; ++i) p(row + 3 * a + i, row + 3 * b + i) += noise(a, b);
 }
 
 void apply(MotionState& state, const Gain<1>& error) {
@@ -46,11 +46,11 @@ void apply(MotionState& state, const Gain<1>& error) {
   state.angular_acceleration_rad_s2 += error.segment<3>(k_angular_acceleration);
 }
 
-// p = T p T', where T rotates each triple of errors by `turn`.
-void turn_errors(MotionCovariance& p, const Matrix3& turn) {
+// p = T p T', where T rotates each triple of errors by `rotation`.
+void rotate_errors(MotionCovariance& p, const Matrix3& rotation) {
   for (int side = 0; side < 2; ++side) {  // T P, then T (T P)' = T P T'
     for (int row = 0; row < k_motion_size; row += 3)
-      p.middleRows<3>(row) = turn.lazyProduct(p.middleRows<3>(row)).eval();
+      p.middleRows<3>(row) = rotation.lazyProduct(p.middleRows<3>(row)).eval();
     p.transposeInPlace();
   }
 }
@@ -68,27 +68,28 @@ Correction correct(MotionState& state, const Gain<M>& ph, const Eigen::Matrix<do
   Eigen::Matrix<double, M, k_motion_size> w;
   for (int i = 0; i < k_motion_size; ++i) w.col(i) = factor.forward(ph.row(i).transpose());
   const Eigen::Matrix<double, M, 1> whitened = factor.forward(innovation);
-  correction.chi_square = whitened.squaredNorm();
+  correction.nis = whitened.squaredNorm();
   apply(state, w.transpose().lazyProduct(whitened));
   state.covariance -= w.transpose().lazyProduct(w);
   return correction;
 }
 
 // Mean and covariance of the second-order term dtheta x (dtheta x lever) / 2 at the end of a lever
-// arm, for a rotation error dtheta of covariance `turn`. Each axis is a quadratic form of dtheta.
+// arm, for a rotation error dtheta of covariance `rotation`. Each axis is a quadratic form of
+// dtheta.
 struct SecondOrder {
   Vector3 mean;
   Matrix3 covariance;
 };
 
-SecondOrder second_order(const Vector3& lever, const Matrix3& turn) {
+SecondOrder second_order(const Vector3& lever, const Matrix3& rotation) {
   std::array<Matrix3, 3> forms;  // quadratic form times the covariance
   SecondOrder out;
   for (int i = 0; i < 3; ++i) {
     Matrix3 form = -lever(i) * Matrix3::Identity();
     form.row(i) += 0.5 * lever.transpose();
     form.col(i) += 0.5 * lever;
-    forms[static_cast<std::size_t>(i)] = form.lazyProduct(turn);
+    forms[static_cast<std::size_t>(i)] = form.lazyProduct(rotation);
     out.mean(i) = 0.5 * forms[static_cast<std::size_t>(i)].trace();
   }
   for (int i = 0; i < 3; ++i)
@@ -101,7 +102,8 @@ SecondOrder second_order(const Vector3& lever, const Matrix3& turn) {
 
 }  // namespace
 
-MotionState start_motion(const UncertainPose& first, const MotionSettings& settings) noexcept {
+MotionState initial_motion_state(const UncertainPose& first,
+                                 const MotionSettings& settings) noexcept {
   MotionState state;
   state.time = first.time;
   state.pose = first.pose;
@@ -110,7 +112,8 @@ MotionState start_motion(const UncertainPose& first, const MotionSettings& setti
   state.covariance.block<3, 3>(k_rotation, k_position) = first.covariance.bottomLeftCorner<3, 3>();
   state.covariance.block<3, 3>(k_rotation, k_rotation) = first.covariance.bottomRightCorner<3, 3>();
   set_variance(state, k_velocity, settings.start_speed_m_s * settings.start_speed_m_s);
-  set_variance(state, k_angular_velocity, settings.start_turn_rad_s * settings.start_turn_rad_s);
+  set_variance(state, k_angular_velocity,
+               settings.start_angular_speed_rad_s * settings.start_angular_speed_rad_s);
   // The stationary variance of a damped acceleration.
   set_variance(state, k_acceleration,
                settings.linear_noise_m2_s5 / (2 * settings.linear_damping_1_s));
@@ -125,26 +128,29 @@ void propagate(MotionState& state, Time time, const MotionSettings& settings,
   const double seconds = (time - state.time).seconds();
   const SingerStep linear = singer_step(settings.linear_damping_1_s, seconds);
   const SingerStep angular = singer_step(settings.angular_damping_1_s, seconds);
-  const Vector3 turn = angular.seconds * state.angular_velocity_rad_s +
-                       angular.place_by_acceleration * state.angular_acceleration_rad_s2;
-  const Quaternion turned = from_rotation_vector(turn);
-  const Matrix3 turn_matrix = turned.toRotationMatrix();
-  // The left Jacobian of a rotation is the rotation by half its vector, up to turn^2 / 24.
-  const Matrix3 half_matrix = from_rotation_vector(0.5 * turn).toRotationMatrix();
+  const Vector3 rotation_vector =
+      angular.seconds * state.angular_velocity_rad_s +
+      angular.position_by_acceleration * state.angular_acceleration_rad_s2;
+  const Quaternion rotation = from_rotation_vector(rotation_vector);
+  const Matrix3 rotation_matrix = rotation.toRotationMatrix();
+  // The left Jacobian of a rotation is the rotation by half its vector, up to rotation_vector^2
+  // / 24.
+  const Matrix3 half_matrix = from_rotation_vector(0.5 * rotation_vector).toRotationMatrix();
 
   state.time = time;
-  state.pose.translation +=
-      linear.seconds * state.velocity_m_s + linear.place_by_acceleration * state.acceleration_m_s2;
-  state.velocity_m_s += linear.speed_by_acceleration * state.acceleration_m_s2;
-  state.acceleration_m_s2 *= linear.acceleration_kept;
-  state.pose.rotation = (turned * state.pose.rotation).normalized();
-  state.angular_velocity_rad_s += angular.speed_by_acceleration * state.angular_acceleration_rad_s2;
-  state.angular_acceleration_rad_s2 *= angular.acceleration_kept;
+  state.pose.translation += linear.seconds * state.velocity_m_s +
+                            linear.position_by_acceleration * state.acceleration_m_s2;
+  state.velocity_m_s += linear.velocity_by_acceleration * state.acceleration_m_s2;
+  state.acceleration_m_s2 *= linear.acceleration_decay;
+  state.pose.rotation = (rotation * state.pose.rotation).normalized();
+  state.angular_velocity_rad_s +=
+      angular.velocity_by_acceleration * state.angular_acceleration_rad_s2;
+  state.angular_acceleration_rad_s2 *= angular.acceleration_decay;
 
   MotionCovariance& p = state.covariance;
   for (int side = 0; side < 2; ++side) {  // F P, then F (F P)' = F P F'
-    carry_rows(p, k_position, linear, Matrix3::Identity(), Matrix3::Identity());
-    carry_rows(p, k_rotation, angular, turn_matrix, half_matrix);
+    propagate_rows(p, k_position, linear, Matrix3::Identity(), Matrix3::Identity());
+    propagate_rows(p, k_rotation, angular, rotation_matrix, half_matrix);
     p.transposeInPlace();
   }
   // Symmetrise: asymmetry by rounding would grow with the square of time.
@@ -163,8 +169,8 @@ Correction correct_by_pose(MotionState& state, const UncertainPose& measured) no
   Correction correction = correct<6>(state, ph, s, innovation);
   if (correction.reason != Reason::none) return correction;
   correction.linear_whitened = Cholesky<3>(s.topLeftCorner<3, 3>()).forward(innovation.head<3>());
-  correction.linear_chi_square = correction.linear_whitened.squaredNorm();
-  correction.angular_chi_square =
+  correction.linear_nis = correction.linear_whitened.squaredNorm();
+  correction.angular_nis =
       Cholesky<3>(s.bottomRightCorner<3, 3>()).squared_length(innovation.tail<3>());
   return correction;
 }
@@ -181,12 +187,12 @@ Correction correct_by_point(MotionState& state, const MeasuredPoint& measured) n
   const Vector3 innovation = measured.measured_m - (state.pose.translation + lever + beyond.mean);
   const Quaternion before = state.pose.rotation;
   Correction correction = correct<3>(state, ph, s, innovation);
-  correction.linear_chi_square = correction.chi_square;
+  correction.linear_nis = correction.nis;
   if (correction.reason != Reason::none) return correction;
   // One marker correlates position and rotation errors by its lever arm, and its correction may
   // rotate the state far. If the errors did not rotate along, the next frame would seem to observe
   // the rotation about the marker, which is unobservable (an inconsistent filter).
-  turn_errors(state.covariance, (state.pose.rotation * before.conjugate()).toRotationMatrix());
+  rotate_errors(state.covariance, (state.pose.rotation * before.conjugate()).toRotationMatrix());
   return correction;
 }
 
@@ -197,13 +203,13 @@ Vector6 pose_difference(const Pose& measured, const Pose& predicted) noexcept {
   return difference;
 }
 
-MotionState moved_state(const MotionState& state, const Pose& moved) noexcept {
+MotionState transformed_state(const MotionState& state, const Pose& moved) noexcept {
   MotionState out = state;
   out.pose = {(moved.rotation * state.pose.rotation).normalized(), moved * state.pose.translation};
   for (Vector3* v : {&out.velocity_m_s, &out.acceleration_m_s2, &out.angular_velocity_rad_s,
                      &out.angular_acceleration_rad_s2})
     *v = moved.rotation * *v;
-  turn_errors(out.covariance, moved.rotation.toRotationMatrix());
+  rotate_errors(out.covariance, moved.rotation.toRotationMatrix());
   return out;
 }
 

@@ -28,7 +28,7 @@ struct MotionSettings {
   double angular_damping_1_s = 55;
   // Initial standard deviations of velocity and angular velocity, each axis.
   double start_speed_m_s = 0.5;
-  double start_turn_rad_s = 3.0;
+  double start_angular_speed_rad_s = 3.0;
 };
 
 // Factors on the settings' process noise, adapted from the innovations.
@@ -39,14 +39,14 @@ struct NoiseScale {
 
 struct Correction {
   Reason reason = Reason::none;
-  double chi_square = 0;                      // NIS of the complete innovation
-  double linear_chi_square = 0;               // NIS of its first three components alone
-  double angular_chi_square = 0;              // NIS of its last three alone; 0 for a point
+  double nis = 0;                             // NIS of the complete innovation
+  double linear_nis = 0;                      // NIS of its first three components alone
+  double angular_nis = 0;                     // NIS of its last three alone; 0 for a point
   Vector3 linear_whitened = Vector3::Zero();  // its first three, whitened; 0 for a point
 };
 
-[[nodiscard]] MotionState start_motion(const UncertainPose& first,
-                                       const MotionSettings& settings) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] MotionState initial_motion_state(
+    const UncertainPose& first, const MotionSettings& settings) noexcept GLINT_NONBLOCKING;
 
 // Propagates the state to `time`; an earlier time changes nothing.
 void propagate(MotionState& state, Time time, const MotionSettings& settings,
@@ -65,8 +65,8 @@ void propagate(MotionState& state, Time time, const MotionSettings& settings,
                                       const Pose& predicted) noexcept GLINT_NONBLOCKING;
 
 // The state in a frame whose poses are `moved` times those of the state's own frame.
-[[nodiscard]] MotionState moved_state(const MotionState& state,
-                                      const Pose& moved) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] MotionState transformed_state(const MotionState& state,
+                                            const Pose& moved) noexcept GLINT_NONBLOCKING;
 
 // The state's pose with its 6x6 marginal covariance.
 [[nodiscard]] UncertainPose pose_of(const MotionState& state) noexcept GLINT_NONBLOCKING;

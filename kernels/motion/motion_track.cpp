@@ -19,20 +19,20 @@ constexpr double k_unit_tolerance = 1e-6;
 // nearly all motion and carries more information, at most that of four frames. Among 1, 2, 3, 4 and
 // 9, four makes the worst of four recordings at 5 Hz most consistent, without harm to the others.
 constexpr double k_frame_s = 0.022222222;
-constexpr double k_frames_most = 4;
+constexpr double k_frames_max = 4;
 
 // Updates one factor by one innovation; the mean of the NIS is the number of axes.
 double moved(double scale, double chi_square, double frames, const AdaptationSettings& settings) {
-  const double ratio = std::min(chi_square / k_point_axes, settings.innovation_max);
+  const double ratio = std::min(chi_square / k_point_axes, settings.nis_ratio_max);
   return std::clamp(scale * (1 + (ratio - 1) * frames / settings.frames), settings.floor,
                     settings.ceiling);
 }
 
 // Successive innovations are uncorrelated if the split between motion and inflation is right. Too
 // large an inflation absorbs motion that the velocity should follow: they correlate positively.
-double moved_by_correlation(double scale, double correlation, double frames,
-                            const AdaptationSettings& settings) {
-  const double most = settings.innovation_max;
+double updated_by_correlation(double scale, double correlation, double frames,
+                              const AdaptationSettings& settings) {
+  const double most = settings.nis_ratio_max;
   const double step = std::clamp(correlation, -most, most) * frames / settings.frames;
   return std::clamp(scale * (1 - step), settings.floor, settings.ceiling);
 }
@@ -56,55 +56,58 @@ bool usable(const UncertainPose& measured) {
 
 Reason MotionTrack::stamp(Time time) const {
   if (!known_ || time > state_.time) return Reason::none;
-  return time == state_.time ? Reason::frame_doubled : Reason::frame_late;
+  return time == state_.time ? Reason::frame_duplicate : Reason::frame_late;
 }
 
 MotionUpdate MotionTrack::update(const UncertainPose& measured, const CorrelatedErrors& correlated,
-                                 const ToolMotionSettings& settings, RestSums& sums) noexcept {
+                                 const ToolMotionSettings& settings,
+                                 StaticWindowSums& sums) noexcept {
   MotionUpdate done{stamp(measured.time), 0};
   if (done.reason == Reason::none && !usable(measured)) done.reason = Reason::out_of_range;
   if (done.reason != Reason::none) return done;
-  if (known_ && measured.time - state_.time > settings.gap_max) forget();
-  const double loosened = loosened_.topLeftCorner<3, 3>().trace();
-  loosened_.setZero();
-  done.rest_tests = rest_.add(measured, correlated, settings.rest, sums);
-  double frames = 1, of_motion = 1;
+  if (known_ && measured.time - state_.time > settings.gap_max) reset();
+  const double inflated = inflation_.topLeftCorner<3, 3>().trace();
+  inflation_.setZero();
+  done.static_tests = rest_.add(measured, correlated, settings.rest, sums);
+  double frames = 1, motion_fraction = 1;
   if (known_) {
-    frames = std::min((measured.time - state_.time).seconds() / k_frame_s, k_frames_most);
+    frames = std::min((measured.time - state_.time).seconds() / k_frame_s, k_frames_max);
     propagate(state_, measured.time, settings.motion, scale_);
     const double expected = state_.covariance.block<3, 3>(k_position, k_position).trace() +
                             measured.covariance.topLeftCorner<3, 3>().trace();
     correction_ = correct_by_pose(state_, measured);
-    const double share = loosened / expected;
+    const double share = inflated / expected;
     const double along = correction_.linear_whitened.dot(innovation_) / k_point_axes;
-    loosening_ = moved_by_correlation(loosening_, share * along, frames, settings.loosening);
+    inflation_scale_ =
+        updated_by_correlation(inflation_scale_, share * along, frames, settings.inflation);
     innovation_ = correction_.linear_whitened;
-    of_motion = 1 - share;
+    motion_fraction = 1 - share;
   }
   if (!known_ || correction_.reason != Reason::none) {
     // First pose, or a covariance that rounding made indefinite.
     known_ = true;
-    state_ = start_motion(measured, settings.motion);
-    scale_ = briskest_ = {};
+    state_ = initial_motion_state(measured, settings.motion);
+    scale_ = peak_scale_ = {};
     correction_ = {};
-    loosening_ = 1;
+    inflation_scale_ = 1;
     innovation_.setZero();
-    posed_ = measured.time;
+    last_pose_time_ = measured.time;
     return done;
   }
   // The share of the innovation that the inflation explains carries no information on the motion.
   scale_.linear =
-      moved(scale_.linear, correction_.linear_chi_square, of_motion * frames, settings.linear);
-  scale_.angular = moved(scale_.angular, correction_.angular_chi_square, frames, settings.angular);
-  posed_ = measured.time;
-  const double faded = 1 - 1 / settings.briskest_frames;
-  briskest_.linear = std::max(scale_.linear, faded * briskest_.linear);
-  briskest_.angular = std::max(scale_.angular, faded * briskest_.angular);
+      moved(scale_.linear, correction_.linear_nis, motion_fraction * frames, settings.linear);
+  scale_.angular = moved(scale_.angular, correction_.angular_nis, frames, settings.angular);
+  last_pose_time_ = measured.time;
+  const double decay = 1 - 1 / settings.peak_scale_frames;
+  peak_scale_.linear = std::max(scale_.linear, decay * peak_scale_.linear);
+  peak_scale_.angular = std::max(scale_.angular, decay * peak_scale_.angular);
   return done;
 }
 
 Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
-                           const ToolMotionSettings& settings, const RestSums& sums) noexcept {
+                           const ToolMotionSettings& settings,
+                           const StaticWindowSums& sums) noexcept {
   const Reason reason = stamp(time);
   if (reason != Reason::none) return reason;
   if (!known_ || time - state_.time > settings.gap_max || points.empty())
@@ -113,18 +116,18 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
   MotionState next = estimate(sums);
   // Re-apply the covariance inflation added since the newest pose; the window's mean does not
   // contain it.
-  if (rests()) add_pose_covariance(loosened_, next.covariance);
+  if (is_static()) add_pose_covariance(inflation_, next.covariance);
   const double seconds = (time - next.time).seconds();
-  const double hidden_s = (time - posed_).seconds();
-  propagate(next, time, settings.motion, partial_noise_scale(settings));
-  add_strokes(next.covariance, k_position, next.velocity_m_s, linear_stroke_1_s(next.velocity_m_s),
-              hidden_s, seconds);
-  add_strokes(next.covariance, k_rotation, next.angular_velocity_rad_s, k_angular_stroke_1_s,
-              hidden_s, seconds);
+  const double hidden_s = (time - last_pose_time_).seconds();
+  propagate(next, time, settings.motion, partial_visibility_noise_scale(settings));
+  add_occlusion_noise(next.covariance, k_position, next.velocity_m_s,
+                      linear_occlusion_share_1_s(next.velocity_m_s), hidden_s, seconds);
+  add_occlusion_noise(next.covariance, k_rotation, next.angular_velocity_rad_s,
+                      k_angular_occlusion_share_1_s, hidden_s, seconds);
   const std::size_t count = std::min(points.size(), k_points_max);
   for (std::size_t i = 0; i < count; ++i) {
     correction_ = correct_by_point(next, points[i]);
-    if (correction_.reason != Reason::none || !std::isfinite(correction_.chi_square))
+    if (correction_.reason != Reason::none || !std::isfinite(correction_.nis))
       return Reason::out_of_range;
   }
   state_ = next;
@@ -132,29 +135,29 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
   return Reason::none;
 }
 
-void MotionTrack::forget() noexcept {
+void MotionTrack::reset() noexcept {
   known_ = false;
-  scale_ = briskest_ = {};
+  scale_ = peak_scale_ = {};
   rest_.clear();
 }
 
 void MotionTrack::move(const Pose& moved) noexcept {
-  state_ = moved_state(state_, moved);
+  state_ = transformed_state(state_, moved);
   rest_.move(moved);
 }
 
-void MotionTrack::loosen(const Matrix6& covariance) noexcept {
-  add_pose_covariance(loosening_ * covariance, state_.covariance);
-  loosened_ += loosening_ * covariance;
+void MotionTrack::inflate_covariance(const Matrix6& covariance) noexcept {
+  add_pose_covariance(inflation_scale_ * covariance, state_.covariance);
+  inflation_ += inflation_scale_ * covariance;
 }
 
-Matrix6 MotionTrack::correlated_covariance(const RestSums& sums) const noexcept {
+Matrix6 MotionTrack::correlated_covariance(const StaticWindowSums& sums) const noexcept {
   return rest_.correlated(sums);
 }
 
-MotionState MotionTrack::estimate(const RestSums& sums) const noexcept {
-  if (!known_ || !rests()) return state_;
-  const Rest rest = rest_.rest(sums);
+MotionState MotionTrack::estimate(const StaticWindowSums& sums) const noexcept {
+  if (!known_ || !is_static()) return state_;
+  const StaticEstimate rest = rest_.rest(sums);
   MotionState state;
   state.time = state_.time;
   state.pose = rest.pose.pose;

@@ -3,7 +3,7 @@
 // What:     a Kalman filter under damped accelerations; the innovations scale its process noise,
 //           not below a floor. While the static detector fires, the estimate is the static window's
 //           mean and drift (zero unless its halves differ). A factor scales the covariance that
-//           loosen() adds; it follows the correlation of successive innovations.
+//           inflate_covariance() adds; it follows the correlation of successive innovations.
 // Cost:     propagate + correct + static window: 11 us a measured pose.
 // Worst:    a full static window; otherwise data independent.
 // Accuracy: by simulation: `glint experiment rest | lag | sine | prediction | occlusion`.
@@ -23,7 +23,7 @@ struct AdaptationSettings {
   double frames;  // time constant of the factor, in frames of 45 Hz
   double floor;   // without it the noise shrinks at rest and the filter lags the next motion
   double ceiling;
-  double innovation_max;  // limit of NIS over its mean: bounds the effect of one bad frame
+  double nis_ratio_max;  // limit of NIS over its mean: bounds the effect of one bad frame
 };
 
 inline constexpr std::size_t k_points_max = 2;  // of a partial measurement: three give a pose
@@ -32,19 +32,20 @@ struct ToolMotionSettings {
   MotionSettings motion;
   AdaptationSettings linear{15, 0.55, 10, 2.3};
   AdaptationSettings angular{13, 0.40, 12, 9};
-  RestSettings rest;
+  StaticDetectorSettings rest;
   // Under partial visibility the innovations barely show the hand's motion until all markers are
-  // visible again. The noise scale is then its recent maximum, which decays over `briskest_frames`
-  // frames, times `partial_noise`.
-  double partial_noise = 2;
-  double briskest_frames = 1000;
-  AdaptationSettings loosening{15, 0.01, 10, 1};  // factor on the covariance that loosen() adds
-  Duration gap_max = milliseconds(1000);          // a longer gap restarts the filter
+  // visible again. The noise scale is then its recent maximum, which decays over
+  // `peak_scale_frames` frames, times `partial_visibility_noise`.
+  double partial_visibility_noise = 2;
+  double peak_scale_frames = 1000;
+  // Factor on the covariance that inflate_covariance() adds.
+  AdaptationSettings inflation{15, 0.01, 10, 1};
+  Duration gap_max = milliseconds(1000);  // a longer gap restarts the filter
 };
 
 struct MotionUpdate {
   Reason reason = Reason::none;
-  int rest_tests = 0;  // chi-square tests of the static window's halves
+  int static_tests = 0;  // chi-square tests of the static window's halves
 };
 
 // The sums of the static window are stored outside, so this is small enough to feed back from frame
@@ -52,35 +53,37 @@ struct MotionUpdate {
 class MotionTrack {
  public:
   // `correlated`: covariances of errors that successive poses share, not in the pose's covariance.
-  // Returns frame_doubled or frame_late if the time stamp does not increase, out_of_range for an
+  // Returns frame_duplicate or frame_late if the time stamp does not increase, out_of_range for an
   // invalid pose or covariance. Then nothing has changed.
   MotionUpdate update(const UncertainPose& measured, const CorrelatedErrors& correlated,
                       const ToolMotionSettings& settings,
-                      RestSums& sums) noexcept GLINT_NONBLOCKING;
+                      StaticWindowSums& sums) noexcept GLINT_NONBLOCKING;
   // Updates by one or two markers of one time. Returns too_few_markers without an earlier pose
   // within gap_max.
   Reason update(Time time, std::span<const MeasuredPoint> points,
                 const ToolMotionSettings& settings,
-                const RestSums& sums) noexcept GLINT_NONBLOCKING;
-  void forget() noexcept GLINT_NONBLOCKING;
+                const StaticWindowSums& sums) noexcept GLINT_NONBLOCKING;
+  void reset() noexcept GLINT_NONBLOCKING;
   // Corrects the parent frame of the estimate by a small motion: every pose p becomes `moved` p.
   void move(const Pose& moved) noexcept GLINT_NONBLOCKING;
   // Inflates the pose's covariance (order as in UncertainPose) by an error of the parent frame
   // since the last measurement. The next innovation contains this error beside the tool's motion.
-  void loosen(const Matrix6& covariance) noexcept GLINT_NONBLOCKING;
+  void inflate_covariance(const Matrix6& covariance) noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] bool known() const { return known_; }
-  [[nodiscard]] bool rests() const { return rest_.rests(); }
+  [[nodiscard]] bool is_static() const { return rest_.is_static(); }
   [[nodiscard]] const Vector3& place() const { return state_.pose.translation; }
   [[nodiscard]] const NoiseScale& noise_scale() const { return scale_; }
-  // Noise scale under partial visibility, see partial_noise.
-  [[nodiscard]] NoiseScale partial_noise_scale(const ToolMotionSettings& settings) const {
-    return {settings.partial_noise * briskest_.linear, settings.partial_noise * briskest_.angular};
+  // Noise scale under partial visibility, see partial_visibility_noise.
+  [[nodiscard]] NoiseScale partial_visibility_noise_scale(
+      const ToolMotionSettings& settings) const {
+    return {settings.partial_visibility_noise * peak_scale_.linear,
+            settings.partial_visibility_noise * peak_scale_.angular};
   }
   // At the newest measurement's time.
-  [[nodiscard]] MotionState estimate(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] MotionState estimate(const StaticWindowSums& sums) const noexcept GLINT_NONBLOCKING;
   // Covariance that correlated errors add to estimate()'s position and rotation, at its time.
-  [[nodiscard]] Matrix6 correlated_covariance(const RestSums& sums) const noexcept
+  [[nodiscard]] Matrix6 correlated_covariance(const StaticWindowSums& sums) const noexcept
       GLINT_NONBLOCKING;
   [[nodiscard]] const Correction& last_correction() const { return correction_; }
 
@@ -89,12 +92,12 @@ class MotionTrack {
 
   bool known_ = false;
   MotionState state_;
-  Time posed_;  // of the newest full pose; partial measurements may be newer
-  NoiseScale scale_, briskest_;
-  Matrix6 loosened_ = Matrix6::Zero();    // added by loosen() since the newest pose
-  double loosening_ = 1;                  // factor on the covariance passed to loosen()
+  Time last_pose_time_;  // of the newest full pose; partial measurements may be newer
+  NoiseScale scale_, peak_scale_;
+  Matrix6 inflation_ = Matrix6::Zero();   // added by inflate_covariance() since the newest pose
+  double inflation_scale_ = 1;            // factor on the covariance passed to inflate_covariance()
   Vector3 innovation_ = Vector3::Zero();  // of the newest pose's position, whitened
-  RestWindow rest_;
+  StaticDetector rest_;
   Correction correction_;
 };
 

@@ -4,9 +4,10 @@
 //           split into an older and a newer half, whose means differ by d; the test statistic is
 //           d' (C1 + C2)^-1 d, C the covariance of a half's mean, correlated errors included. The
 //           static window is the longest window before the first failure. Frames have equal weight.
-// Cost:     at most k_rest_levels tests of one 6x6 factor each, 0.4 us: 5 us.
+// Cost:     at most k_static_window_levels tests of one 6x6 factor each, 0.4 us: 5 us.
 // Worst:    a full window that passes all tests.
-// Accuracy: the mean is exact for small rotations: a pose further than k_anchor_rad from the anchor
+// Accuracy: the mean is exact for small rotations: a pose further than k_window_rotation_max_rad
+// from the anchor
 //           starts a new window. Its covariance is the mean's plus that of a hand's tremor.
 // Source:   chi-square test of two samples' means, 6 degrees of freedom: Foerstner and Wrobel 2016,
 //           Photogrammetric Computer Vision, section 3.2.
@@ -20,12 +21,12 @@
 
 namespace glint {
 
-inline constexpr int k_rest_frames_max = 128;  // 2.8 s at 45 Hz
-inline constexpr int k_rest_levels = 13;       // 2 .. 128 frames
-inline constexpr double k_anchor_rad = 0.35;
-inline constexpr double k_anchor_m = 0.2;
+inline constexpr int k_static_frames_max = 128;    // 2.8 s at 45 Hz
+inline constexpr int k_static_window_levels = 13;  // 2 .. 128 frames
+inline constexpr double k_window_rotation_max_rad = 0.35;
+inline constexpr double k_window_translation_max_m = 0.2;
 
-struct RestSettings {
+struct StaticDetectorSettings {
   // Quantiles for 6 degrees of freedom. Short windows are tested with every new frame: significance
   // level 1e-5. Long ones share most of their frames with the windows before: 1e-3.
   double short_chi_square_max = 33.0;
@@ -37,14 +38,14 @@ struct RestSettings {
 };
 
 // Estimate of a static tool: pose and drift, with covariances.
-struct Rest {
+struct StaticEstimate {
   UncertainPose pose;
   Vector6 drift_per_s = Vector6::Zero();  // m/s and rad/s; zero unless significant (5 %)
   Matrix6 drift_covariance = Matrix6::Zero();
 };
 
 // Ring buffer of prefix sums over frames since the window's anchor, one entry a frame: 45 KB.
-class RestSums {
+class StaticWindowSums {
  public:
   struct Sum {
     Vector6 place = Vector6::Zero();  // pose differences from the anchor
@@ -56,21 +57,22 @@ class RestSums {
 
   // A full window's entries, one before it, and the three that one frame may write: these never
   // overwrite entries of the window before that frame.
-  static constexpr int k_size = k_rest_frames_max + 1 + 3;
+  static constexpr int k_size = k_static_frames_max + 1 + 3;
 
  private:
   static std::size_t wrapped(int index) { return static_cast<std::size_t>(index % k_size); }
   std::array<Sum, k_size> items_;
 };
 
-// Position of the static window in its RestSums. A copy from before add() stays valid after it, so
-// that a frame can be undone. Each window needs its own sums.
-class RestWindow {
+// Position of the static window in its StaticWindowSums. A copy from before add() stays valid after
+// it, so that a frame can be undone. Each window needs its own sums.
+class StaticDetector {
  public:
   // `correlated`: covariances of errors that successive poses share, not in the pose's covariance.
   // Returns the number of tests of the halves.
   int add(const UncertainPose& measured, const CorrelatedErrors& correlated,
-          const RestSettings& settings, RestSums& sums) noexcept GLINT_NONBLOCKING;
+          const StaticDetectorSettings& settings,
+          StaticWindowSums& sums) noexcept GLINT_NONBLOCKING;
   void clear() noexcept { frames_ = kept_ = 0; }
   // Moves all poses by a small motion: moves the anchor, which the sums refer to. The rotation of
   // the sums' axes is neglected, because the summed differences are as small as the noise.
@@ -78,25 +80,26 @@ class RestWindow {
     anchor_ = {(moved.rotation * anchor_.rotation).normalized(), moved * anchor_.translation};
   }
 
-  [[nodiscard]] bool rests() const { return frames_ >= frames_min_; }
+  [[nodiscard]] bool is_static() const { return frames_ >= frames_min_; }
   [[nodiscard]] int frames() const { return frames_; }
   // Estimate at the newest frame's time. Requires frames() >= 2.
-  [[nodiscard]] Rest rest(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] StaticEstimate rest(const StaticWindowSums& sums) const noexcept GLINT_NONBLOCKING;
   // Covariance of the correlated errors: of the mean if static, otherwise of the newest pose.
-  [[nodiscard]] Matrix6 correlated(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] Matrix6 correlated(const StaticWindowSums& sums) const noexcept GLINT_NONBLOCKING;
 
  private:
-  using Sum = RestSums::Sum;
-  void restart(const UncertainPose& only, RestSums& sums);
-  int push(Time time, const Sum& added, const RestSettings& settings, RestSums& sums);
-  [[nodiscard]] const Sum& sum_before(int frames, const RestSums& sums) const;
-  [[nodiscard]] Sum newest(int frames, const RestSums& sums) const;
+  using Sum = StaticWindowSums::Sum;
+  void restart(const UncertainPose& only, StaticWindowSums& sums);
+  int push(Time time, const Sum& added, const StaticDetectorSettings& settings,
+           StaticWindowSums& sums);
+  [[nodiscard]] const Sum& sum_before(int frames, const StaticWindowSums& sums) const;
+  [[nodiscard]] Sum newest(int frames, const StaticWindowSums& sums) const;
   struct Halves {
     Vector6 difference;  // newer mean - older mean
     double chi_square;
   };
-  [[nodiscard]] Halves halves(int frames, const RestSums& sums) const;
-  [[nodiscard]] double seconds_of(int frames, const RestSums& sums) const;
+  [[nodiscard]] Halves halves(int frames, const StaticWindowSums& sums) const;
+  [[nodiscard]] double seconds_of(int frames, const StaticWindowSums& sums) const;
   [[nodiscard]] Pose placed(const Vector6& place) const;
 
   Pose anchor_;
@@ -105,8 +108,8 @@ class RestWindow {
   int newest_ = 0;
   int kept_ = 0;    // candidate frames for the static window
   int frames_ = 0;  // frames in the static window
-  int frames_min_ = RestSettings{}.frames_min;
-  double drift_chi_square_ = RestSettings{}.drift_chi_square;
+  int frames_min_ = StaticDetectorSettings{}.frames_min;
+  double drift_chi_square_ = StaticDetectorSettings{}.drift_chi_square;
   CorrelatedErrors correlated_;  // of the newest pose
   CorrelationTimes times_;
 };

@@ -17,11 +17,11 @@
 namespace glint {
 
 struct SingerStep {
-  double seconds = 0;                // d position / d velocity
-  double place_by_acceleration = 0;  // d position / d acceleration, s^2
-  double speed_by_acceleration = 0;  // d velocity / d acceleration, s
-  double acceleration_kept = 1;      // fraction
-  Matrix3 noise = Matrix3::Zero();   // of (position, velocity, acceleration), density 1
+  double seconds = 0;                   // d position / d velocity
+  double position_by_acceleration = 0;  // d position / d acceleration, s^2
+  double velocity_by_acceleration = 0;  // d velocity / d acceleration, s
+  double acceleration_decay = 1;        // fraction
+  Matrix3 noise = Matrix3::Zero();      // of (position, velocity, acceleration), density 1
 };
 
 [[nodiscard]] SingerStep singer_step(double damping_1_s, double seconds) noexcept GLINT_NONBLOCKING;

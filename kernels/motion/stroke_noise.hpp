@@ -23,28 +23,28 @@
 namespace glint {
 
 // Rms of the share, for slow translation and for rotation.
-inline constexpr double k_linear_stroke_1_s = 0.9;
-inline constexpr double k_angular_stroke_1_s = 2.0;
-inline constexpr double k_stroke_reach_m = 0.4;
+inline constexpr double k_linear_occlusion_share_1_s = 0.9;
+inline constexpr double k_angular_occlusion_share_1_s = 2.0;
+inline constexpr double k_hand_reach_m = 0.4;
 
 // Rms of the share for translation at this velocity.
-[[nodiscard]] inline double linear_stroke_1_s(const Vector3& velocity_m_s) {
-  constexpr double k_least = k_linear_stroke_1_s * k_linear_stroke_1_s;
-  constexpr double k_per_speed = 1 / (2 * k_stroke_reach_m);
+[[nodiscard]] inline double linear_occlusion_share_1_s(const Vector3& velocity_m_s) {
+  constexpr double k_least = k_linear_occlusion_share_1_s * k_linear_occlusion_share_1_s;
+  constexpr double k_per_speed = 1 / (2 * k_hand_reach_m);
   return std::sqrt(k_least + k_per_speed * k_per_speed * velocity_m_s.squaredNorm());
 }
 
 // Covariance added to position (or rotation) `seconds` after the last estimate of the velocity.
-[[nodiscard]] inline Matrix3 stroke_spread(const Vector3& velocity, double share_1_s,
-                                           double seconds) {
+[[nodiscard]] inline Matrix3 occlusion_covariance(const Vector3& velocity, double share_1_s,
+                                                  double seconds) {
   const double moved = 0.5 * share_1_s * seconds * seconds;
   return (moved * velocity) * (moved * velocity).transpose();
 }
 
 // Adds the noise of the last `seconds` to a covariance that was propagated over them. `hidden_s` is
 // the time since the last full pose, `place` the first index of position or rotation.
-inline void add_strokes(MotionCovariance& covariance, int place, const Vector3& velocity,
-                        double share_1_s, double hidden_s, double seconds) {
+inline void add_occlusion_noise(MotionCovariance& covariance, int place, const Vector3& velocity,
+                                double share_1_s, double hidden_s, double seconds) {
   // White noise density that raises the velocity's covariance from its old to its new value.
   const double density = share_1_s * share_1_s * (2 * hidden_s - seconds);
   const Matrix3 noise = (density * velocity) * velocity.transpose();

@@ -20,10 +20,10 @@ class ToolMotion {
   Reason update(Time time, std::span<const MeasuredPoint> points) noexcept GLINT_NONBLOCKING {
     return track_.update(time, points, settings, sums_);
   }
-  void forget() noexcept { track_.forget(); }
+  void reset() noexcept { track_.reset(); }
 
   [[nodiscard]] bool known() const { return track_.known(); }
-  [[nodiscard]] bool rests() const { return track_.rests(); }
+  [[nodiscard]] bool is_static() const { return track_.is_static(); }
   [[nodiscard]] const NoiseScale& noise_scale() const { return track_.noise_scale(); }
   [[nodiscard]] MotionState estimate() const noexcept GLINT_NONBLOCKING {
     return track_.estimate(sums_);
@@ -35,7 +35,7 @@ class ToolMotion {
 
  private:
   MotionTrack track_;
-  RestSums sums_;
+  StaticWindowSums sums_;
 };
 
 }  // namespace glint

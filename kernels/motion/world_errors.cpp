@@ -10,50 +10,53 @@ namespace glint {
 namespace {
 
 // Chi-square quantile, 6 degrees of freedom, significance level 1e-6.
-constexpr double k_sight_chi_square_max = 38.3;
-constexpr int k_sights_refused_max = 9;
-constexpr double k_unknown_m = 1, k_unknown_rad = 1;  // prior about the first measurement, 1 sigma
+constexpr double k_measurement_chi_square_max = 38.3;
+constexpr int k_measurements_rejected_max = 9;
+constexpr double k_prior_sigma_m = 1,
+                 k_prior_sigma_rad = 1;  // prior about the first measurement, 1 sigma
 
 }  // namespace
 
-bool WorldErrors::add(const BodySight& sight) noexcept {
+bool WorldErrors::add(const BodyMeasurement& sight) noexcept {
   if (!idle()) return false;
-  waiting_ = sight;
+  pending_ = sight;
   next_ = 0;
   return true;
 }
 
 void WorldErrors::work() noexcept {
   if (idle()) return;
-  filters_[next_].update(waiting_, k_walk_factors[next_]);
+  filters_[next_].update(pending_, k_head_noise_factors[next_]);
   ++next_;
-  if (idle()) ++sights_;
+  if (idle()) ++measurement_count_;
 }
 
-WorldFindings WorldErrors::of_factor(std::size_t factor) const { return filters_[factor].shared(); }
+WorldErrorEstimate WorldErrors::of_factor(std::size_t factor) const {
+  return filters_[factor].shared();
+}
 
 WorldErrors::Filter::Filter() {
   covariance_.setIdentity();
   covariance_.topLeftCorner<12, 12>().setZero();
-  forget_place();
+  reset_body_pose();
 }
 
-void WorldErrors::Filter::forget_place() {
+void WorldErrors::Filter::reset_body_pose() {
   covariance_.block<6, k_states>(6, 0).setZero();
   covariance_.block<k_states, 6>(0, 6).setZero();
-  covariance_.diagonal().segment<3>(6).setConstant(k_unknown_m * k_unknown_m);
-  covariance_.diagonal().segment<3>(9).setConstant(k_unknown_rad * k_unknown_rad);
+  covariance_.diagonal().segment<3>(6).setConstant(k_prior_sigma_m * k_prior_sigma_m);
+  covariance_.diagonal().segment<3>(9).setConstant(k_prior_sigma_rad * k_prior_sigma_rad);
   state_.segment<6>(6).setZero();
   refused_ = 0;
   known_ = false;
 }
 
-void WorldErrors::Filter::update(const BodySight& sight, double factor) noexcept {
+void WorldErrors::Filter::update(const BodyMeasurement& sight, double factor) noexcept {
   const double kept = sight.walked.kept;
   state_.head<6>() *= kept;
   covariance_.topRows<6>() *= kept;
   covariance_.leftCols<6>() *= kept;
-  covariance_.topLeftCorner<6, 6>() += factor * factor * sight.walked.fresh();
+  covariance_.topLeftCorner<6, 6>() += factor * factor * sight.walked.added();
   if (!known_) T_world_body_ = sight.T_world_body;
   known_ = true;
 
@@ -72,10 +75,10 @@ void WorldErrors::Filter::update(const BodySight& sight, double factor) noexcept
   if (!root.positive) return;
   const double chi_square = root.squared_length(innovation);
   // A rejected measurement counts with the limit, so it is never likelier than an accepted one.
-  log_likelihood_ -= 0.5 * std::min(chi_square, k_sight_chi_square_max);
+  log_likelihood_ -= 0.5 * std::min(chi_square, k_measurement_chi_square_max);
   for (int i = 0; i < 6; ++i) log_likelihood_ -= logarithm(root.lower(i, i));
-  if (!(chi_square <= k_sight_chi_square_max)) {
-    if (++refused_ >= k_sights_refused_max) forget_place();
+  if (!(chi_square <= k_measurement_chi_square_max)) {
+    if (++refused_ >= k_measurements_rejected_max) reset_body_pose();
     return;
   }
   refused_ = 0;
@@ -85,7 +88,7 @@ void WorldErrors::Filter::update(const BodySight& sight, double factor) noexcept
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
 }
 
-WorldFindings WorldErrors::Filter::shared() const {
+WorldErrorEstimate WorldErrors::Filter::shared() const {
   return {state_.tail<k_shared_errors>(),
           covariance_.bottomRightCorner<k_shared_errors, k_shared_errors>(), log_likelihood_};
 }

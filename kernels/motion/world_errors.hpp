@@ -9,7 +9,8 @@
 // Cost:     a call of work(): one update of 18 states by 6 values.
 // Worst:    data independent.
 // Accuracy: first order in the errors. A measurement that fails the chi-square test is rejected;
-//           after k_sights_refused_max in a row (the headset has relocalised) b becomes unknown.
+//           after k_measurements_rejected_max in a row (the headset has relocalised) b becomes
+//           unknown.
 // Source:   Bar-Shalom, Li and Kirubarajan 2001, sections 5.2 (the update) and 11.6.2 (static
 //           multiple models, compared by their likelihoods).
 #pragma once
@@ -25,18 +26,18 @@ namespace glint {
 inline constexpr int k_shared_errors = k_common_errors + 1;
 
 // Factors on the headset's declared standard deviations.
-inline constexpr std::array<double, 5> k_walk_factors{0.5, 1, 2, 4, 8};
+inline constexpr std::array<double, 5> k_head_noise_factors{0.5, 1, 2, 4, 8};
 
-struct BodySight {
+struct BodyMeasurement {
   Pose T_world_body;                     // as measured by the headset and the fit
   Matrix6 covariance = Matrix6::Zero();  // of the fit, along the world's axes at the body
   Eigen::Matrix<double, 6, k_shared_errors> by_errors =
       Eigen::Matrix<double, 6, k_shared_errors>::Zero();  // per declared standard deviation
-  WalkedError walked;  // about the body, since the previous measurement
+  ErrorTransition walked;  // about the body, since the previous measurement
 };
 
 // Estimate of one filter, in declared standard deviations.
-struct WorldFindings {
+struct WorldErrorEstimate {
   Eigen::Matrix<double, k_shared_errors, 1> errors =
       Eigen::Matrix<double, k_shared_errors, 1>::Zero();
   Eigen::Matrix<double, k_shared_errors, k_shared_errors> covariance =
@@ -47,24 +48,25 @@ struct WorldFindings {
 class WorldErrors {
  public:
   // Stores a measurement for work(). Returns false while the previous one is in process.
-  bool add(const BodySight& sight) noexcept GLINT_NONBLOCKING;
+  bool add(const BodyMeasurement& sight) noexcept GLINT_NONBLOCKING;
   // Updates the next factor's filter by the stored measurement, if any.
   void work() noexcept GLINT_NONBLOCKING;
 
-  [[nodiscard]] int sights() const { return sights_; }  // measurements processed by all factors
-  [[nodiscard]] bool idle() const { return next_ == k_walk_factors.size(); }
-  [[nodiscard]] WorldFindings of_factor(std::size_t factor) const;
+  // Measurements processed by all factors.
+  [[nodiscard]] int measurement_count() const { return measurement_count_; }
+  [[nodiscard]] bool idle() const { return next_ == k_head_noise_factors.size(); }
+  [[nodiscard]] WorldErrorEstimate of_factor(std::size_t factor) const;
 
  private:
   static constexpr int k_states = 12 + k_shared_errors;
   class Filter {
    public:
     Filter();
-    void update(const BodySight& sight, double factor) noexcept GLINT_NONBLOCKING;
-    [[nodiscard]] WorldFindings shared() const;
+    void update(const BodyMeasurement& sight, double factor) noexcept GLINT_NONBLOCKING;
+    [[nodiscard]] WorldErrorEstimate shared() const;
 
    private:
-    void forget_place();
+    void reset_body_pose();
     bool known_ = false;
     int refused_ = 0;  // consecutive rejections
     Pose T_world_body_;
@@ -72,10 +74,10 @@ class WorldErrors {
     Eigen::Matrix<double, k_states, k_states> covariance_;
     double log_likelihood_ = 0;
   };
-  std::array<Filter, k_walk_factors.size()> filters_;
-  std::size_t next_ = k_walk_factors.size();
-  BodySight waiting_;
-  int sights_ = 0;
+  std::array<Filter, k_head_noise_factors.size()> filters_;
+  std::size_t next_ = k_head_noise_factors.size();
+  BodyMeasurement pending_;
+  int measurement_count_ = 0;
 };
 
 }  // namespace glint

@@ -9,10 +9,10 @@
 namespace glint {
 namespace {
 
-constexpr double k_nowhere = 2;      // parameter beyond any segment
+constexpr double k_no_crossing = 2;  // parameter beyond any segment
 constexpr double k_rounding = 1e-6;  // far above the rounding error of a unit quaternion
 
-bool usable(double number) noexcept { return std::isfinite(number) && number > 0; }
+bool is_positive_finite(double number) noexcept { return std::isfinite(number) && number > 0; }
 
 double angle_between(const Quaternion& a, const Quaternion& b) noexcept {
   return rotation_vector(a.conjugate() * b).norm();
@@ -22,10 +22,11 @@ double angle_between(const Quaternion& a, const Quaternion& b) noexcept {
 
 Reason StrokeResampler::begin(const StrokeSettings& settings) noexcept {
   *this = {};
-  const bool right = usable(settings.spacing_m) && usable(settings.turn_rad) &&
+  const bool right = is_positive_finite(settings.spacing_m) &&
+                     is_positive_finite(settings.turn_rad) &&
                      settings.turn_rad <= std::numbers::pi && settings.gap_max.nanoseconds > 0 &&
-                     usable(settings.acceleration_m_s2) &&
-                     usable(settings.turn_acceleration_rad_s2);
+                     is_positive_finite(settings.acceleration_m_s2) &&
+                     is_positive_finite(settings.angular_acceleration_rad_s2);
   settings_ = settings;
   return right ? Reason::none : Reason::out_of_range;
 }
@@ -40,8 +41,8 @@ Reason StrokeResampler::add(const UncertainPose& sample_in) noexcept {
     const UncertainPose& last = sample(count_ - 1);
     if (sample_in.time <= last.time) return Reason::frame_late;
     if (sample_in.time - last.time > settings_.gap_max) return Reason::too_old;
-    const double way = (pose.translation - last.pose.translation).norm();
-    if (way > settings_.spacing_m * k_stroke_reach) return Reason::out_of_range;
+    const double distance = (pose.translation - last.pose.translation).norm();
+    if (distance > settings_.spacing_m * k_stroke_step_max) return Reason::out_of_range;
   }
   ring_[static_cast<std::size_t>(count_++ % k_ring)] = sample_in;
   return Reason::none;
@@ -56,8 +57,8 @@ StrokeResampler::Neighbours StrokeResampler::neighbours_of(std::int64_t middle) 
   const Time time = sample(middle).time;
   const std::int64_t most = std::min({std::int64_t{k_half}, middle, count_ - 1 - middle});
   std::int64_t half = 0;
-  while (half < most && time - sample(middle - half - 1).time <= k_near &&
-         sample(middle + half + 1).time - time <= k_near) {
+  while (half < most && time - sample(middle - half - 1).time <= k_neighbour_time_max &&
+         sample(middle + half + 1).time - time <= k_neighbour_time_max) {
     ++half;
   }
   if (half == 0) return {own.translation, own.rotation};
@@ -79,24 +80,25 @@ StrokeResampler::Neighbours StrokeResampler::neighbours_of(std::int64_t middle) 
 }
 
 // Segment parameter at which the distance or rotation from the last point reaches the spacing;
-// k_nowhere if it does not.
+// k_no_crossing if it does not.
 double StrokeResampler::crossing() const noexcept {
-  double u = k_nowhere;
+  double u = k_no_crossing;
   if ((to_.place - kept_.place).norm() >= settings_.spacing_m) {
     const Vector3 along = to_.place - from_.place, off = from_.place - kept_.place;
     const double a = along.squaredNorm(), b = off.dot(along);
     const double c = off.squaredNorm() - settings_.spacing_m * settings_.spacing_m;
     const double root = std::max(0.0, b * b - a * c);
-    u = a > 0 ? (std::sqrt(root) - b) / a : k_nowhere;
+    u = a > 0 ? (std::sqrt(root) - b) / a : k_no_crossing;
   }
   const double turned = angle_between(kept_.rotation, to_.rotation);
   if (turned >= settings_.turn_rad) {
-    const double before = angle_between(kept_.rotation, slerp(from_.rotation, to_.rotation, done_));
+    const double before =
+        angle_between(kept_.rotation, slerp(from_.rotation, to_.rotation, processed_));
     const double more = turned - before;
     const double share = more > 0 ? (settings_.turn_rad - before) / more : 1;
-    u = std::min(u, done_ + (1 - done_) * std::clamp(share, 0.0, 1.0));
+    u = std::min(u, processed_ + (1 - processed_) * std::clamp(share, 0.0, 1.0));
   }
-  return u == k_nowhere ? u : std::clamp(u, done_, 1.0);
+  return u == k_no_crossing ? u : std::clamp(u, processed_, 1.0);
 }
 
 UncertainPose StrokeResampler::between(double u) const noexcept {
@@ -110,10 +112,10 @@ UncertainPose StrokeResampler::between(double u) const noexcept {
   point.pose.rotation = slerp(a.pose.rotation, b.pose.rotation, u);
   point.covariance = (1 - u) * a.covariance + u * b.covariance;
   // Deviation from the chord at a constant acceleration a: a u (1 - u) t^2 / 2.
-  const double bow = 0.5 * u * (1 - u) * gap.seconds() * gap.seconds();
+  const double deviation_s2 = 0.5 * u * (1 - u) * gap.seconds() * gap.seconds();
   for (int i = 0; i < 6; ++i) {
-    const double off =
-        bow * (i < 3 ? settings_.acceleration_m_s2 : settings_.turn_acceleration_rad_s2);
+    const double off = deviation_s2 * (i < 3 ? settings_.acceleration_m_s2
+                                             : settings_.angular_acceleration_rad_s2);
     point.covariance(i, i) += off * off;
   }
   return point;
@@ -122,10 +124,10 @@ UncertainPose StrokeResampler::between(double u) const noexcept {
 StrokeResampler::Next StrokeResampler::next(UncertainPose& point) noexcept {
   for (int i = 0; i <= k_ring; ++i) {  // pending segments: at most the ring's capacity
     if (!segment_open_) {
-      const bool known = middle_ + k_half < count_ || (ending_ && middle_ < count_);
-      if (!known) return last_point(point);
+      const bool available = middle_ + k_half < count_ || (ending_ && middle_ < count_);
+      if (!available) return last_point(point);
       to_ = neighbours_of(middle_);
-      done_ = 0;
+      processed_ = 0;
       if (middle_ == 0) {
         from_ = kept_ = to_;
         point = last_ = sample(middle_++);
@@ -137,7 +139,7 @@ StrokeResampler::Next StrokeResampler::next(UncertainPose& point) noexcept {
     const double u = crossing();
     if (u <= 1) {
       point = last_ = between(u);
-      done_ = u;
+      processed_ = u;
       kept_ = {constant_velocity(from_.place, to_.place, u),
                slerp(from_.rotation, to_.rotation, u)};
       ++points_;
@@ -156,11 +158,11 @@ StrokeResampler::Next StrokeResampler::last_point(UncertainPose& point) noexcept
   const UncertainPose& end = sample(count_ - 1);
   if (end.time <= last_.time) return Next::none;
   point = end;
-  const double way = (end.pose.translation - last_.pose.translation).norm();
+  const double distance = (end.pose.translation - last_.pose.translation).norm();
   const double turn = angle_between(end.pose.rotation, last_.pose.rotation);
-  const bool near = way < 0.5 * settings_.spacing_m && turn < 0.5 * settings_.turn_rad;
+  const bool near = distance < 0.5 * settings_.spacing_m && turn < 0.5 * settings_.turn_rad;
   if (!near) return Next::point;
-  return points_ > 1 ? Next::last_moves : Next::none;
+  return points_ > 1 ? Next::replace_last : Next::none;
 }
 
 }  // namespace glint

@@ -8,7 +8,7 @@
 //           by the samples themselves would prefer, in a slow stroke, samples with noise
 //           directed forward.
 // Cost:     for a sample 8 neighbours, two square roots; for a point one slerp.
-// Worst:    a sample k_stroke_reach spacings from the last, rotated by 180 deg: that many points
+// Worst:    a sample k_stroke_step_max spacings from the last, rotated by 180 deg: that many points
 //           and 180 deg / turn_rad more. Samples farther away are rejected.
 // Accuracy: the covariance is conservative for any correlation of the errors of a and b ((1 - u) Ca
 //           + u Cb - Cov((1 - u) a + u b) is positive semidefinite). It is exact if both have the
@@ -25,7 +25,7 @@
 
 namespace glint {
 
-inline constexpr int k_stroke_reach = 512;  // spacings, from one sample to the next
+inline constexpr int k_stroke_step_max = 512;  // spacings, from one sample to the next
 
 struct StrokeSettings {
   double spacing_m = 0.002;
@@ -33,15 +33,15 @@ struct StrokeSettings {
   Duration gap_max = milliseconds(100);  // between samples; beyond it the path is unknown
   // RMS acceleration of a drawing hand per axis: 35 mm and 0.16 rad up to 1.8 Hz (sim/hand_motion).
   double acceleration_m_s2 = 2.3;
-  double turn_acceleration_rad_s2 = 10;
+  double angular_acceleration_rad_s2 = 10;
 };
 
 class StrokeResampler {
  public:
   enum class Next : std::uint8_t {
-    none,        // no further point yet
-    point,       // one more
-    last_moves,  // the end, so near the last point that it replaces it
+    none,          // no further point yet
+    point,         // one more
+    replace_last,  // the end, so near the last point that it replaces it
   };
 
   // Starts a new stroke. Returns out_of_range unless all settings are finite and above 0 and
@@ -59,9 +59,9 @@ class StrokeResampler {
   Next next(UncertainPose& point) noexcept GLINT_NONBLOCKING;
 
  private:
-  static constexpr int k_half = 4;                      // neighbours on each side, at most
-  static constexpr Duration k_near = milliseconds(20);  // and at most this far away
-  static constexpr int k_ring = 2 * k_half + 2;         // neighbours of a segment's two ends
+  static constexpr int k_half = 4;  // neighbours on each side, at most
+  static constexpr Duration k_neighbour_time_max = milliseconds(20);  // and at most this far away
+  static constexpr int k_ring = 2 * k_half + 2;  // neighbours of a segment's two ends
 
   // Mean pose of a sample's neighbours.
   struct Neighbours {
@@ -82,7 +82,7 @@ class StrokeResampler {
   Neighbours from_, to_;     // the segment's ends
   Neighbours kept_;          // at the last point
   UncertainPose last_;       // the last point
-  double done_ = 0;          // fraction of the segment already processed
+  double processed_ = 0;     // fraction of the segment already processed
   int points_ = 0;           // of the stroke
   bool segment_open_ = false;
   bool ending_ = false, ended_ = false;

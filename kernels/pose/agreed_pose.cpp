@@ -21,16 +21,16 @@ Pose stepped(const Pose& x, const Vector6& step, const Vector3& lever, const Vec
 }
 
 // Gauss-Newton step from x, and the covariance at x.
-NearPose solved(const NormalEquations& normal, const Pose& x, const Vector3& mean_m,
-                const Vector3& reference_m) {
-  NearPose near;
+LinearisedPose gauss_newton_step(const NormalEquations& normal, const Pose& x,
+                                 const Vector3& mean_m, const Vector3& reference_m) {
+  LinearisedPose near;
   const Result<PoseFactor> factor = pose_factor(normal.matrix);
   if (!factor) {
     near.reason = Reason::degenerate;
     return near;
   }
   const Vector3 lever = x.rotation * (reference_m - mean_m);
-  const Vector6 step = -factor.value.solve(normal.slope);
+  const Vector6 step = -factor.value.solve(normal.gradient);
   near.T_camera_tool = stepped(x, step, lever, reference_m);
   near.covariance = moved_covariance(factor.value.inverse(), lever);
   near.chi_square = normal.chi_square;
@@ -40,7 +40,7 @@ NearPose solved(const NormalEquations& normal, const Pose& x, const Vector3& mea
 
 }  // namespace
 
-Pose face_on(std::span<const WeightedMarker> markers, const Pose& T_camera_tool) noexcept {
+Pose face_on_pose(std::span<const WeightedMarker> markers, const Pose& T_camera_tool) noexcept {
   const Vector3 mean_m = mean_of(markers);
   const Pose flip = depth_flipped(T_camera_tool, flattest_direction(markers, mean_m), mean_m);
   Pose out;
@@ -49,29 +49,32 @@ Pose face_on(std::span<const WeightedMarker> markers, const Pose& T_camera_tool)
   return out;
 }
 
-NearPose near_pose(std::span<const WeightedMarker> markers, const Pose& x,
-                   const Vector3& reference_m) noexcept {
+LinearisedPose linearised_pose(std::span<const WeightedMarker> markers, const Pose& x,
+                               const Vector3& reference_m) noexcept {
   const Vector3 mean_m = mean_of(markers);
   NormalEquations alone;
-  if (add_markers(markers, x, mean_m, alone)) return solved(alone, x, mean_m, reference_m);
-  NearPose none;
+  if (add_markers(markers, x, mean_m, alone))
+    return gauss_newton_step(alone, x, mean_m, reference_m);
+  LinearisedPose none;
   none.reason = Reason::degenerate;
   return none;
 }
 
-AgreedPose agreed_pose(std::span<const WeightedMarker> markers, const ExpectedPose& expected,
-                       int steps_max) noexcept {
-  AgreedPose agreed;
+MapPose map_pose(std::span<const WeightedMarker> markers, const PredictedPose& expected,
+                 int steps_max) noexcept {
+  MapPose agreed;
   agreed.reason = Reason::degenerate;
   const Vector3 mean_m = mean_of(markers);
-  const Result<PoseFactor> known = pose_factor(expected.covariance);
-  if (!known) return agreed;
-  const PosePrior prior{expected.T_camera_tool, known.value.inverse(), expected.reference_m};
+  const Result<PoseFactor> prediction_factor = pose_factor(expected.covariance);
+  if (!prediction_factor) return agreed;
+  const PosePrior prior{expected.T_camera_tool, prediction_factor.value.inverse(),
+                        expected.reference_m};
   const WeightedFit fit = fit_weighted(markers, mean_m, expected.T_camera_tool, &prior, steps_max);
   agreed.steps = fit.steps;
   agreed.reason = fit.reason;
   if (agreed.reason != Reason::none) return agreed;
-  static_cast<NearPose&>(agreed) = near_pose(markers, fit.T_camera_tool, expected.reference_m);
+  static_cast<LinearisedPose&>(agreed) =
+      linearised_pose(markers, fit.T_camera_tool, expected.reference_m);
   agreed.chi_square = fit.chi_square;
   return agreed;
 }

@@ -48,20 +48,20 @@ struct NominalMarker {
 
 // Budget of one blob: depth pixels read, samples averaged, lens steps for its ray.
 struct MarkerWorkLimits {
-  int pixels = k_blobs_max * k_range_pixels_a_blob;
-  int samples = k_blobs_max * k_range_samples_a_blob;
+  int pixels = k_blobs_max * k_range_pixels_per_blob;
+  int samples = k_blobs_max * k_range_samples_per_blob;
   int ray_steps = k_ray_steps_max;
 };
 
 // Returns true if `out` has a ray, false if the lens has no ray for the centroid. blob_index: index
-// into Blobs. shift: the camera's sphere_shift(); {} subtracts nothing. Without any depth,
+// into Blobs. shift: the camera's sphere_offset(); {} subtracts nothing. Without any depth,
 // k_marker_no_depth is set and surface_range_m is 0. surface_range_m: metres, radial, from the
 // camera to the marker's nearest surface point along the centroid's ray.
 [[nodiscard]] bool measure_marker(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
-                                  const CameraModel& camera, const SphereShift& shift,
+                                  const CameraModel& camera, const SphereOffset& shift,
                                   const DepthSettings& depth, const NominalMarker& nominal,
                                   Marker& out,
-                                  const MarkerWorkLimits& most = {}) noexcept GLINT_NONBLOCKING;
+                                  const MarkerWorkLimits& limits = {}) noexcept GLINT_NONBLOCKING;
 
 // Loop counts.
 struct BackProjectWork {
@@ -75,15 +75,15 @@ struct BackProjectWork {
 // Computes the marker of every blob, in the blobs' order; a blob without a ray gives none. Ignores
 // blobs beyond limits.blobs.
 BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const CameraModel& camera,
-                             const SphereShift& shift, const DepthSettings& depth,
+                             const SphereOffset& shift, const DepthSettings& depth,
                              const NominalMarker& nominal, Markers& out,
                              const Limits& limits = {}) noexcept GLINT_NONBLOCKING;
 
 // Upper bound of back_project's loop counts.
 [[nodiscard]] constexpr BackProjectWork back_project_work_max(const Limits& limits) {
-  const int samples = limits.blobs * limits.range_samples_a_blob;
-  return {limits.blobs, limits.blobs * limits.ray_steps, limits.blobs * limits.range_pixels_a_blob,
-          samples, samples};
+  const int samples = limits.blobs * limits.range_samples_per_blob;
+  return {limits.blobs, limits.blobs * limits.ray_steps,
+          limits.blobs * limits.range_pixels_per_blob, samples, samples};
 }
 
 // Returns the image area in pixels of a sphere (or of a disc that faces the camera) with its centre

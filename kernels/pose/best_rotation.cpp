@@ -9,9 +9,10 @@ namespace {
 
 // Right singular vector of C whose singular value is separated from both others, and whether that
 // is the largest; otherwise it is the smallest.
-LoneVector lone_vector(const Matrix3& c) {
-  return lone_eigenvector({c.col(0).squaredNorm(), c.col(1).squaredNorm(), c.col(2).squaredNorm(),
-                           c.col(0).dot(c.col(1)), c.col(0).dot(c.col(2)), c.col(1).dot(c.col(2))});
+IsolatedEigenvector separated_vector(const Matrix3& c) {
+  return isolated_eigenvector({c.col(0).squaredNorm(), c.col(1).squaredNorm(),
+                               c.col(2).squaredNorm(), c.col(0).dot(c.col(1)),
+                               c.col(0).dot(c.col(2)), c.col(1).dot(c.col(2))});
 }
 
 // A right singular vector v and b = C v.
@@ -24,9 +25,9 @@ struct LargestTwo {
   Singular first, second;
 };
 LargestTwo largest_two(const Matrix3& c) {
-  const LoneVector lone = lone_vector(c);
+  const IsolatedEigenvector lone = separated_vector(c);
   const Vector3& n = lone.v;
-  const auto [p, q] = directions_across(n);
+  const auto [p, q] = orthonormal_basis(n);
   const Vector3 cp = c * p, cq = c * q;
   // One plane rotation makes their images under C orthogonal; the longer one comes first.
   const double apart = cp.squaredNorm() - cq.squaredNorm();

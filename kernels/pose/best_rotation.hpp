@@ -17,7 +17,8 @@
 //           matter.
 // Source:   Kanatani 1994 (C = U W V^T, R = U diag(1, 1, det U V^T) V^T); the separated eigenvalue,
 //           and its vector by a cross product: Smith 1961, Communications of the ACM 4, p. 168, and
-//           Eberly 2014, "A Robust Eigensolver for 3x3 Symmetric Matrices" (lone_eigenvector.hpp).
+//           Eberly 2014, "A Robust Eigensolver for 3x3 Symmetric Matrices"
+//           (lone_eigenvector.hpp).
 #pragma once
 
 #include "kernels/geometry.hpp"

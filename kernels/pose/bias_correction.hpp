@@ -30,11 +30,11 @@ struct ValidRange {
 
 struct BiasCorrection {
   CorrectionFrame frame = CorrectionFrame::none;
-  Vector3 shift_m = Vector3::Zero();
-  Vector3 turn_rad = Vector3::Zero();  // rotation vector
-  ValidRange range_m;                  // distance of the tool's origin from the camera
-  ValidRange off_axis_cosine;          // between the optical axis and the ray to that origin
-  ValidRange tilt_cosine;              // between the tool's z axis and that ray
+  Vector3 translation_m = Vector3::Zero();
+  Vector3 rotation_rad = Vector3::Zero();  // rotation vector
+  ValidRange range_m;                      // distance of the tool's origin from the camera
+  ValidRange off_axis_cosine;              // between the optical axis and the ray to that origin
+  ValidRange tilt_cosine;                  // between the tool's z axis and that ray
 };
 
 struct CorrectedPose {
@@ -48,11 +48,11 @@ struct CorrectedPose {
                                          const Pose& T_camera_tool) noexcept GLINT_NONBLOCKING;
 
 // Quantities that decide whether a correction is valid for a pose. Cosines are 1 if the range is 0.
-struct SeenFrom {
+struct ViewGeometry {
   double range_m = 0;
   double off_axis_cosine = 1;
   double tilt_cosine = 1;
 };
-[[nodiscard]] SeenFrom seen_from(const Pose& T_camera_tool) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] ViewGeometry view_geometry(const Pose& T_camera_tool) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -23,57 +23,58 @@ using Rows = std::array<Row, 3 * k_markers_per_tool_max>;
 // Limits of chi-square: of the noise (42 degrees of freedom, significance level 1e-3: 16 markers),
 // plus that of errors so many times their declared size. Above the sum, the labeling or the minimum
 // is wrong.
-constexpr double k_noise_chi_square_max = 76, k_errors_most = 8;
+constexpr double k_noise_chi_square_max = 76, k_errors_max = 8;
 
 // Number of neighbouring fits that share a lens residual, and a part of the range ripple.
-constexpr double k_fits_a_residual = 4, k_fits_a_ripple = 16;
+constexpr double k_fits_per_residual = 4, k_fits_per_ripple = 16;
 
 double square_of(double x) { return x * x; }
 
 // Quantities common to all residuals of a marker.
-struct Place {
+struct MarkerGeometry {
   const LocalRays& rays;
   Matrix3 rotation;
   Vector3 lever;
   int number;
 };
 
-void set_row(double residual, const Vector3& gradient, const Place& place, double marker_sigma_m,
-             Row& row) {
+void set_row(double residual, const Vector3& gradient, const MarkerGeometry& geometry,
+             double marker_sigma_m, Row& row) {
   row.residual = residual;
-  row.by_pose << gradient, place.lever.cross(gradient);
+  row.by_pose << gradient, geometry.lever.cross(gradient);
   row.by_errors.setZero();
-  row.by_errors.segment<3>(k_common_errors + 3 * place.number) =
-      marker_sigma_m * (place.rotation.transpose() * gradient);
+  row.by_errors.segment<3>(k_common_errors + 3 * geometry.number) =
+      marker_sigma_m * (geometry.rotation.transpose() * gradient);
 }
 
 // Residual perpendicular to the ray, along `across`; camera errors rotate the measured ray.
 void set_across(const Vector3& across, const WeightedMarker& marker, const Vector3& point,
-                const Place& place, const CameraUncertainty& camera, double marker_sigma_m,
-                Row& row) {
+                const MarkerGeometry& geometry, const CameraUncertainty& camera,
+                double marker_sigma_m, Row& row) {
   const double inverse = 1 / marker.ray.dot(point);
   const double residual = across.dot(point) * inverse;
-  set_row(residual, (across - marker.ray * residual) * inverse, place, marker_sigma_m, row);
-  const double right = across.dot(place.rays.along_x), down = across.dot(place.rays.along_y);
+  set_row(residual, (across - marker.ray * residual) * inverse, geometry, marker_sigma_m, row);
+  const double right = across.dot(geometry.rays.along_x), down = across.dot(geometry.rays.along_y);
   row.by_errors(2) = right * camera.principal_point_px;
   row.by_errors(3) = down * camera.principal_point_px;
-  row.by_errors(4) = across.dot(place.rays.outward) * camera.focal_scale;
-  const double slow_px2 =
-      square_of(camera.slow_centroid_px) + k_fits_a_residual * square_of(k_lens_residual_px);
+  row.by_errors(4) = across.dot(geometry.rays.outward) * camera.focal_scale;
+  const double slow_px2 = square_of(camera.correlated_centroid_px) +
+                          k_fits_per_residual * square_of(k_lens_residual_px);
   const double noise = std::sqrt(1 + slow_px2 * (square_of(right) + square_of(down)));
   row.residual /= noise;
   row.by_pose /= noise;
   row.by_errors /= noise;
 }
 
-void set_along(const WeightedMarker& marker, const Vector3& point, const Place& place,
+void set_along(const WeightedMarker& marker, const Vector3& point, const MarkerGeometry& geometry,
                const CameraUncertainty& camera, double marker_sigma_m, Row& row) {
   const double slow_m2 =
-      square_of(camera.slow_range_m) + k_fits_a_ripple * square_of(k_range_ripple_m);
+      square_of(camera.correlated_range_m) + k_fits_per_ripple * square_of(k_range_ripple_m);
   const double weight =
       marker.per_range_sigma / std::sqrt(1 + slow_m2 * square_of(marker.per_range_sigma));
   const double range = std::sqrt(point.squaredNorm());
-  set_row((range - marker.range_m) * weight, point * (weight / range), place, marker_sigma_m, row);
+  set_row((range - marker.range_m) * weight, point * (weight / range), geometry, marker_sigma_m,
+          row);
   row.by_errors(0) = weight * camera.range_offset_m;
   row.by_errors(1) = weight * marker.range_m * camera.range_scale;
 }
@@ -96,10 +97,12 @@ Result<OptimalFit> add_fit(std::span<const WeightedMarker> markers, std::span<co
     const Vector3 point = T_camera_tool * marker.model_m;
     if (!(marker.ray.dot(point) > 0) || of_tool[i] < 0 || of_tool[i] >= k_markers_per_tool_max)
       return {{}, Reason::degenerate};
-    const Place place{rays[i], rotation, rotation * (marker.model_m - mean_m), of_tool[i]};
-    set_across(marker.across_first, marker, point, place, camera, marker_sigma_m, rows[3 * i]);
-    set_across(marker.across_second, marker, point, place, camera, marker_sigma_m, rows[3 * i + 1]);
-    set_along(marker, point, place, camera, marker_sigma_m, rows[3 * i + 2]);
+    const MarkerGeometry geometry{rays[i], rotation, rotation * (marker.model_m - mean_m),
+                                  of_tool[i]};
+    set_across(marker.across_first, marker, point, geometry, camera, marker_sigma_m, rows[3 * i]);
+    set_across(marker.across_second, marker, point, geometry, camera, marker_sigma_m,
+               rows[3 * i + 1]);
+    set_along(marker, point, geometry, camera, marker_sigma_m, rows[3 * i + 2]);
     for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
       normal += rows[k].by_pose.lazyProduct(rows[k].by_pose.transpose());
     range_m += marker.range_m;
@@ -127,13 +130,13 @@ Result<OptimalFit> add_fit(std::span<const WeightedMarker> markers, std::span<co
     left_squares += row.residual * row.residual;
     error_squares += row.by_errors.squaredNorm();
   }
-  if (!(left_squares <= k_noise_chi_square_max + k_errors_most * k_errors_most * error_squares))
+  if (!(left_squares <= k_noise_chi_square_max + k_errors_max * k_errors_max * error_squares))
     return {{}, Reason::bad_fit};
   if (errors != nullptr) {
     for (std::size_t k = 0; k < 3 * count; ++k) {
       const ErrorVector& left = rows[k].by_errors;
       for (int c = 0; c < k_calibration_errors; ++c) {
-        errors->pull(c) -= left(c) * rows[k].residual;
+        errors->information_vector(c) -= left(c) * rows[k].residual;
         for (int r = c; r < k_calibration_errors; ++r)
           errors->information(r, c) += left(r) * left(c);
       }

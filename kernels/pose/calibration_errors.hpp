@@ -38,7 +38,7 @@ inline constexpr double k_lens_residual_px = 0.1, k_range_ripple_m = 0.001;  // 
 
 struct CalibrationErrors {
   ErrorMatrix information = ErrorMatrix::Zero();  // lower triangle only
-  ErrorVector pull = ErrorVector::Zero();
+  ErrorVector information_vector = ErrorVector::Zero();
   double ranges_m = 0;  // sum of the markers' mean ranges
   int fits = 0;
 };

@@ -110,8 +110,8 @@ Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexc
   return {Vector3{p.x() / length, p.y() / length, 1 / length}};
 }
 
-Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel, int steps_max,
-                                     int& lens_steps) noexcept {
+Result<RayJacobian> unproject_with_jacobian(const CameraModel& camera, const Vector2& pixel,
+                                            int steps_max, int& lens_steps) noexcept {
   Vector2 p{(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
   if (!(p.squaredNorm() < 1e6)) return {{}, Reason::out_of_range};
   // Derivative of p by the pixel: the lens's Jacobian, inverted.
@@ -127,7 +127,7 @@ Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& p
     dy = Vector2{-d.dxdy, d.dxdx} * (inverse * dy.y());
   }
   const double shrink = 1 / std::sqrt(p.squaredNorm() + 1);
-  Result<TurningRay> out;
+  Result<RayJacobian> out;
   const Vector3 ray{p.x() * shrink, p.y() * shrink, shrink};
   // Component of a change on the plane z = 1 that is perpendicular to the ray.
   const auto across = [&](const Vector2& change) {

@@ -48,16 +48,16 @@ inline constexpr int k_lut_search_iterations_max = k_lens_steps_max;
                                         const Vector2& pixel) noexcept GLINT_NONBLOCKING;
 
 // A pixel's unit ray and its derivatives by the pixel, perpendicular to the ray.
-struct TurningRay {
+struct RayJacobian {
   Vector3 ray = Vector3::UnitZ();
   Vector3 along_x = Vector3::Zero(), along_y = Vector3::Zero();
 };
 // For every lens but a table, whose derivatives are differences between neighbours. Returns
 // Reason::out_of_range if there is no ray or steps_max Newton steps do not find it. Adds the steps
 // taken to `lens_steps`.
-[[nodiscard]] Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel,
-                                                   int steps_max,
-                                                   int& lens_steps) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] Result<RayJacobian> unproject_with_jacobian(
+    const CameraModel& camera, const Vector2& pixel, int steps_max,
+    int& lens_steps) noexcept GLINT_NONBLOCKING;
 
 // Returns Reason::out_of_range if the point is behind the camera or outside the lens. The pixel may
 // be outside the frame.

@@ -35,16 +35,16 @@ bool range_fits(double range_m, const CorrespondSettings& settings) {
 
 // Bit masks over the tool's markers: `point` is within each of the two gates of its predicted
 // position.
-struct NearMask {
-  unsigned near = 0, nearest = 0;
+struct GateMask {
+  unsigned in_prior_gate = 0, in_partial_gate = 0;
 };
-NearMask near_mask(const std::array<Vector3, k_markers_per_tool_max>& places, int count,
-                   const Vector3& point, double gate_m, double few_gate_m) {
-  NearMask mask;
+GateMask near_mask(const std::array<Vector3, k_markers_per_tool_max>& predicted_m, int count,
+                   const Vector3& point, double gate_m, double partial_gate_m) {
+  GateMask mask;
   for (int j = 0; j < count; ++j) {
-    const double square = (point - places[static_cast<std::size_t>(j)]).squaredNorm();
-    mask.near |= static_cast<unsigned>(square <= gate_m * gate_m) << j;
-    mask.nearest |= static_cast<unsigned>(square <= few_gate_m * few_gate_m) << j;
+    const double square = (point - predicted_m[static_cast<std::size_t>(j)]).squaredNorm();
+    mask.in_prior_gate |= static_cast<unsigned>(square <= gate_m * gate_m) << j;
+    mask.in_partial_gate |= static_cast<unsigned>(square <= partial_gate_m * partial_gate_m) << j;
   }
   return mask;
 }
@@ -61,14 +61,14 @@ void swap_candidates(Candidates& candidates, std::size_t a, std::size_t b) {
 int select_candidates(const Markers& markers, const Tool& tool, const CorrespondSettings& settings,
                       const Pose* prior_T_camera_tool, Candidates& candidates) noexcept {
   candidates.count = 0;
-  std::array<Vector3, k_markers_per_tool_max> places;
+  std::array<Vector3, k_markers_per_tool_max> predicted_m;
   const int predicted = prior_T_camera_tool != nullptr ? tool.marker_count : 0;
   for (int j = 0; j < predicted; ++j) {
     const auto slot = static_cast<std::size_t>(j);
-    places[slot] = *prior_T_camera_tool * tool.markers_m[slot];
+    predicted_m[slot] = *prior_T_camera_tool * tool.markers_m[slot];
   }
-  std::array<std::uint8_t, k_blobs_max> near{}, nearest{};
-  const double few_gate_m = std::min(settings.few_gate_m, settings.prior_gate_m);
+  std::array<std::uint8_t, k_blobs_max> in_prior_gate{}, in_partial_gate{};
+  const double partial_gate_m = std::min(settings.partial_gate_m, settings.prior_gate_m);
   std::size_t first_far = 0;  // candidates before it are near the prediction
   const int count = std::clamp(markers.count, 0, settings.markers_max);
   for (int m = 0; m < count; ++m) {
@@ -86,25 +86,26 @@ int select_candidates(const Markers& markers, const Tool& tool, const Correspond
     candidates.ray[slot] = marker.ray;
     candidates.across_variance_m2[slot] = across * across;
     candidates.marker[slot] = static_cast<std::int16_t>(m);
-    const NearMask mask = near_mask(places, predicted, point, settings.prior_gate_m, few_gate_m);
-    near[slot] = static_cast<std::uint8_t>(mask.near);
-    nearest[slot] = static_cast<std::uint8_t>(mask.nearest);
-    if (mask.near == 0) continue;
+    const GateMask mask =
+        near_mask(predicted_m, predicted, point, settings.prior_gate_m, partial_gate_m);
+    in_prior_gate[slot] = static_cast<std::uint8_t>(mask.in_prior_gate);
+    in_partial_gate[slot] = static_cast<std::uint8_t>(mask.in_partial_gate);
+    if (mask.in_prior_gate == 0) continue;
     swap_candidates(candidates, slot, first_far);
-    std::swap(near[slot], near[first_far]);
-    std::swap(nearest[slot], nearest[first_far]);
+    std::swap(in_prior_gate[slot], in_prior_gate[first_far]);
+    std::swap(in_partial_gate[slot], in_partial_gate[first_far]);
     ++first_far;
   }
   candidates.words = (candidates.count + 63) / 64;
-  candidates.near = {};
-  candidates.nearest = {};
+  candidates.in_prior_gate = {};
+  candidates.in_partial_gate = {};
   for (std::size_t a = 0; a < first_far; ++a) {
     for (int j = 0; j < predicted; ++j) {
       const auto slot = static_cast<std::size_t>(j);
-      candidates.near[slot].word[a / 64] |= static_cast<std::uint64_t>((near[a] >> j) & 1)
-                                            << (a % 64);
-      candidates.nearest[slot].word[a / 64] |= static_cast<std::uint64_t>((nearest[a] >> j) & 1)
-                                               << (a % 64);
+      candidates.in_prior_gate[slot].word[a / 64] |=
+          static_cast<std::uint64_t>((in_prior_gate[a] >> j) & 1) << (a % 64);
+      candidates.in_partial_gate[slot].word[a / 64] |=
+          static_cast<std::uint64_t>((in_partial_gate[a] >> j) & 1) << (a % 64);
     }
   }
   return count;

@@ -38,9 +38,9 @@ struct Candidates {
   std::array<double, k_blobs_max> across_variance_m2;  // of the centre, across its ray, per axis
   std::array<std::int16_t, k_blobs_max> marker;        // index into Markers
   int count = 0;
-  int words = 0;          // of a CandidateSet that are in use
-  CandidateSets near;     // per tool marker: within prior_gate_m of its prediction
-  CandidateSets nearest;  // per tool marker: within few_gate_m of it
+  int words = 0;                  // of a CandidateSet that are in use
+  CandidateSets in_prior_gate;    // per tool marker: within prior_gate_m of its prediction
+  CandidateSets in_partial_gate;  // per tool marker: within partial_gate_m of it
 };
 
 // The prior may be null. Returns the number of markers read.

@@ -25,30 +25,30 @@
 namespace glint {
 
 // Hypotheses whose tips and rotations differ by less are one pose: half of a gross error.
-inline constexpr double k_readings_apart_m = 0.010;
-inline constexpr double k_readings_apart_dot = 0.997888;  // of quaternions: 0.13 rad
+inline constexpr double k_hypotheses_apart_m = 0.010;
+inline constexpr double k_hypotheses_apart_dot = 0.997888;  // of quaternions: 0.13 rad
 // Upper limit on the squared Mahalanobis distance of the followed hypothesis. If it fails the
 // chi-square test, a partially occluded marker may be the cause: its chi-square counts at most up
 // to the test's limit.
-inline constexpr double k_followed_surprise_most = 40;
+inline constexpr double k_followed_nis_max = 40;
 // Odds gained in a frame without another hypothesis. They are small: the true one may be among
 // those not tested.
-inline constexpr double k_no_rival_worth = 8;
+inline constexpr double k_no_alternative_odds = 8;
 
-struct PoseReading {
+struct PoseHypothesis {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();
   double chi_square = 0;
-  double surprise = 0;                          // squared Mahalanobis distance; 0: no prediction
-  double explained_most = k_no_surprise_known;  // limit of the chi-square test
-  int labeling = 0;                             // index of its labeling
+  double mahalanobis_square = 0;                  // squared Mahalanobis distance; 0: no prediction
+  double chi_square_max = k_mahalanobis_unknown;  // limit of the chi-square test
+  int labeling = 0;                               // index of its labeling
 };
 
-struct ChosenReading {
+struct ChosenHypothesis {
   int index = 0;
-  double odds = k_odds_most;  // against the likeliest hypothesis that is apart
-  bool turned = false;        // the followed hypothesis is outweighed
-  bool unexpected = false;    // far from the prediction, which no hypothesis of this frame is near
+  double odds = k_odds_max;  // against the likeliest hypothesis that is apart
+  bool switched = false;     // the followed hypothesis is outweighed
+  bool unexpected = false;   // far from the prediction, which no hypothesis of this frame is near
 };
 
 [[nodiscard]] bool are_apart(const Pose& one, const Pose& other,
@@ -56,8 +56,8 @@ struct ChosenReading {
 
 // Requires at least one hypothesis. odds_before: of the prediction that the squared Mahalanobis
 // distances refer to. tip_m: tool frame.
-[[nodiscard]] ChosenReading choose_reading(std::span<const PoseReading> readings,
-                                           double odds_before,
-                                           const Vector3& tip_m) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] ChosenHypothesis choose_hypothesis(std::span<const PoseHypothesis> readings,
+                                                 double odds_before,
+                                                 const Vector3& tip_m) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

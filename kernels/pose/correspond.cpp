@@ -7,12 +7,14 @@
 namespace glint {
 namespace {
 
-// Searches from `most` to `least` markers; ends fewer_kept markers below the best labeling found.
+// Searches from `count_max` to `count_min` markers; ends fewer_markers_max markers below the best
+// labeling found.
 void run_levels(LabelingSearch& search, const CandidateSets& allowed,
-                const CorrespondSettings& settings, int most, int least, const Labelings& found) {
-  for (int target = most; target >= least && !search.full(); --target) {
+                const CorrespondSettings& settings, int count_max, int count_min,
+                const Labelings& found) {
+  for (int target = count_max; target >= count_min && !search.full(); --target) {
     const int best = found.count > 0 ? found.items[0].count : 0;
-    if (target < best - settings.fewer_kept) return;
+    if (target < best - settings.fewer_markers_max) return;
     search.run(allowed, target);
   }
 }
@@ -26,7 +28,7 @@ CandidateSets all_of(const Candidates& candidates) {
 }
 
 // Candidates of a labeling, each allowed as any of the tool's markers.
-CandidateSets those_of(const Labeling& labeling, const Candidates& candidates) {
+CandidateSets candidates_of(const Labeling& labeling, const Candidates& candidates) {
   CandidateSet named{};
   for (int a = 0; a < candidates.count; ++a) {
     const std::int16_t marker = candidates.marker[static_cast<std::size_t>(a)];
@@ -38,7 +40,7 @@ CandidateSets those_of(const Labeling& labeling, const Candidates& candidates) {
   return sets;
 }
 
-bool agrees(const Labeling& labeling, const Tool& tool, const Pose& prior, double gate_m) {
+bool is_within_gate(const Labeling& labeling, const Tool& tool, const Pose& prior, double gate_m) {
   for (int j = 0; j < tool.marker_count; ++j) {
     const auto slot = static_cast<std::size_t>(j);
     if (labeling.marker[slot] < 0) continue;
@@ -52,8 +54,8 @@ bool agrees(const Labeling& labeling, const Tool& tool, const Pose& prior, doubl
 // Log prior ratio of the predicted position to any position in the workspace, in units of
 // chi-square: twice the logarithm of the two densities' ratio, at least 1. Tools that claim the
 // same markers share the workspace, so its size only has to be larger than any prediction's sigma.
-double worth_of(const Labeling& labeling, const Tool& tool, const CorrespondSettings& settings,
-                const Pose& prior) {
+double log_prior_ratio(const Labeling& labeling, const Tool& tool,
+                       const CorrespondSettings& settings, const Pose& prior) {
   constexpr double k_workplace_m = 1;
   const double sigma = std::max(settings.prior_sigma_m, settings.range_sigma_m);
   const Vector3 middle = tool.middle_m();
@@ -68,8 +70,8 @@ void prefer_predicted(Labelings& found, const Tool& tool, const CorrespondSettin
   const double noise_m2 = settings.range_sigma_m * settings.range_sigma_m;
   for (int k = 0; k < found.count; ++k) {
     Labeling& labeling = found.items[static_cast<std::size_t>(k)];
-    if (agrees(labeling, tool, prior, settings.prior_gate_m))
-      labeling.predicted_worth_m2 = noise_m2 * worth_of(labeling, tool, settings, prior);
+    if (is_within_gate(labeling, tool, prior, settings.prior_gate_m))
+      labeling.log_prior_ratio_m2 = noise_m2 * log_prior_ratio(labeling, tool, settings, prior);
   }
   const Labeling best = found.items[0];
   const double slack = 9 * noise_m2 / best.count;
@@ -77,7 +79,7 @@ void prefer_predicted(Labelings& found, const Tool& tool, const CorrespondSettin
     const Labeling candidate = found.items[static_cast<std::size_t>(k)];
     if (candidate.count != best.count) return;
     if (!(candidate.rms_m * candidate.rms_m - best.rms_m * best.rms_m <= slack)) return;
-    if (candidate.predicted_worth_m2 == 0) continue;
+    if (candidate.log_prior_ratio_m2 == 0) continue;
     for (int m = k; m > 0; --m) {
       found.items[static_cast<std::size_t>(m)] = found.items[static_cast<std::size_t>(m - 1)];
     }
@@ -115,15 +117,15 @@ CorrespondWork propose_labelings(const Markers& markers, const Tool& tool,
   work.pairs = match_pairs(candidates, tool, settings, scratch.matches);
   LabelingSearch search(tool, settings, candidates, scratch.matches, labelings);
   if (predicted) {
-    run_levels(search, candidates.near, settings, most, least_alone, labelings);
-    run_levels(search, candidates.nearest, settings, std::min(most, least_alone - 1),
+    run_levels(search, candidates.in_prior_gate, settings, most, least_alone, labelings);
+    run_levels(search, candidates.in_partial_gate, settings, std::min(most, least_alone - 1),
                least_predicted, labelings);
   }
   if (!predicted || !settings.only_near) {
     run_levels(search, all_of(candidates), settings, most, least_alone, labelings);
   }
   if (predicted && labelings.count > 0) {
-    search.run(those_of(labelings.items[0], candidates), labelings.items[0].count);
+    search.run(candidates_of(labelings.items[0], candidates), labelings.items[0].count);
   }
   if (predicted) prefer_predicted(labelings, tool, settings, *prior_T_camera_tool);
   if (search.full()) {

@@ -20,11 +20,11 @@
 //
 // With a prediction (the prior):
 //   1. The search first tries only candidates within prior_gate_m of their predicted positions.
-//      Only there, within few_gate_m, are labelings of fewer than min_markers_without_prior markers
-//      allowed, but at least min_markers_with_prior.
+//      Only there, within partial_gate_m, are labelings of fewer than min_markers_without_prior
+//      markers allowed, but at least min_markers_with_prior.
 //   2. Unless only_near is set, it then tries all candidates, for labelings of at least
-//      min_markers_without_prior markers and at most fewer_kept fewer than the best found. Finally
-//      it tries other labelings of the best one's markers, which may have been swapped.
+//      min_markers_without_prior markers and at most fewer_markers_max fewer than the best found.
+//      Finally it tries other labelings of the best one's markers, which may have been swapped.
 //   3. The order remains by count, then rms, then the smaller marker indices, with one exception.
 //      Consider the labelings with the most markers whose rms does not differ significantly from
 //      the least: count (rms^2 - least^2) <= 9 range_sigma^2 (3 sigma of the likelihood ratio).

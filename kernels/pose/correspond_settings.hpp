@@ -20,13 +20,13 @@ struct CorrespondSettings {
   double prior_sigma_m = 0.006;             // of a predicted marker's position, per axis
   // Gate for labelings of fewer markers than min_markers_without_prior, which agree by chance among
   // many stray reflections: the tool's largest possible motion. At most prior_gate_m counts.
-  double few_gate_m = 0.05;
+  double partial_gate_m = 0.05;
   // True if the tool is certainly within prior_gate_m of its prediction: markers beyond it are
   // another tool's or stray reflections.
   bool only_near = false;
   int min_markers_without_prior = 4;  // 3 of many false markers agree by chance; a tool of three: 3
   int min_markers_with_prior = 3;
-  int fewer_kept = 1;             // labelings with this many markers fewer than the best are kept
+  int fewer_markers_max = 1;      // labelings with this many markers fewer than the best are kept
                                   // too, in case another tool holds a marker; 0 with a single tool
   int markers_max = k_blobs_max;  // maximum number of markers read, in their order
   int search_steps_max = k_search_steps_max;  // of the search; a fit counts as k_fit_steps

@@ -13,16 +13,16 @@ struct Weighed {
   Reason reason = Reason::none;
 };
 
-Weighed weigh(const Markers& markers, const MarkerSights& sights, const Tool& tool,
+Weighed weigh(const Markers& markers, const MarkerObservations& sights, const Tool& tool,
               const Labeling& labeling) {
   Weighed out;
   for (std::size_t i = 0; i < labeling.marker.size(); ++i) {
     if (labeling.marker[i] < 0) continue;
     const auto seen = static_cast<std::size_t>(labeling.marker[i]) % k_blobs_max;
-    const MarkerSight& sight = sights[seen];
+    const MarkerMeasurementModel& sight = sights[seen];
     const double range = centre_range_m(markers.items[seen], tool);
     const Result<WeightedMarker> marker =
-        weigh_marker(tool.markers_m[i], sight.rays, range, sight.variance);
+        whiten_marker(tool.markers_m[i], sight.rays, range, sight.variance);
     if (!marker) out.reason = marker.reason;
     out.items[out.count++] = marker.value;
   }
@@ -31,7 +31,7 @@ Weighed weigh(const Markers& markers, const MarkerSights& sights, const Tool& to
 
 }  // namespace
 
-DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sights,
+DecidedLabeling decide_labeling(const Markers& markers, const MarkerObservations& sights,
                                 const Tool& tool, const Labelings& labelings,
                                 const PosePrior* prior, const RefineSettings& settings) noexcept {
   DecidedLabeling out;
@@ -40,12 +40,12 @@ DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sigh
   if (count == 0 && out.reason == Reason::none) out.reason = Reason::no_labeling;
   // First pass: all markers of each labeling. Second pass, if none passes: one of its markers
   // removed.
-  for (const int left_out_max : {0, settings.left_out_max}) {
+  for (const int rejected_max : {0, settings.rejected_max}) {
     if (out.chosen >= 0) break;
     for (int k = 0; k < count; ++k) {
       const Labeling& labeling = labelings.items[static_cast<std::size_t>(k)];
       if (out.chosen >= 0 &&
-          (left_out_max > 0 ||
+          (rejected_max > 0 ||
            labeling.count < labelings.items[static_cast<std::size_t>(out.chosen)].count))
         break;
       const Weighed weighed = weigh(markers, sights, tool, labeling);
@@ -54,7 +54,7 @@ DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sigh
         continue;
       }
       RefineSettings as_decided = settings;
-      as_decided.left_out_max = left_out_max;
+      as_decided.rejected_max = rejected_max;
       const RefinedPose pose =
           refine_pose({weighed.items.data(), weighed.count}, tool.tip_m, prior, as_decided);
       out.work += pose.work;
@@ -68,7 +68,7 @@ DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sigh
       out.chosen = k;
       out.pose = pose;
     }
-    if (settings.left_out_max < 1) break;
+    if (settings.rejected_max < 1) break;
   }
   if (out.chosen >= 0) out.reason = Reason::none;
   return out;

@@ -22,7 +22,7 @@
 namespace glint {
 
 // Element i belongs to element i of Markers.
-using MarkerSights = std::array<MarkerSight, k_blobs_max>;
+using MarkerObservations = std::array<MarkerMeasurementModel, k_blobs_max>;
 
 struct DecidedLabeling {
   int chosen = -1;  // index into Labelings::items, -1: none
@@ -35,19 +35,19 @@ struct DecidedLabeling {
 };
 
 // Requires that the tool and the labelings belong to the markers. The prior may be null.
-// pose.left_out is an index into the labeling's visible markers, in the tool's order.
+// pose.rejected is an index into the labeling's visible markers, in the tool's order.
 [[nodiscard]] DecidedLabeling decide_labeling(
-    const Markers& markers, const MarkerSights& sights, const Tool& tool,
+    const Markers& markers, const MarkerObservations& sights, const Tool& tool,
     const Labelings& labelings, const PosePrior* prior,
     const RefineSettings& settings) noexcept GLINT_NONBLOCKING;
 
 // Upper bound of decide_labeling's loop counts.
 [[nodiscard]] constexpr RefineWork decide_work_max(int markers, const RefineSettings& settings) {
-  RefineSettings none_left_out = settings;
-  none_left_out.left_out_max = 0;
-  const RefineWork one = refine_work_max(markers, none_left_out);
+  RefineSettings none_rejected = settings;
+  none_rejected.rejected_max = 0;
+  const RefineWork one = refine_work_max(markers, none_rejected);
   const RefineWork again = refine_work_max(markers, settings);
-  const bool twice = settings.left_out_max > 0;
+  const bool twice = settings.rejected_max > 0;
   return {k_labelings_max * (one.fits + (twice ? again.fits : 0)),
           k_labelings_max * (one.steps + (twice ? again.steps : 0)),
           k_labelings_max * (one.marker_steps + (twice ? again.marker_steps : 0))};

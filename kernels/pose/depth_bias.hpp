@@ -15,9 +15,10 @@
 namespace glint {
 
 struct DepthBias {
-  double offset_m = 0;     // at k_reference_m, of an infinitely bright marker
-  double per_metre = 0;    // slope by range
-  double dim_m = 0;        // low-signal part at a peak of k_reference_counts; doubles at half of it
+  double offset_m = 0;   // at k_reference_m, of an infinitely bright marker
+  double per_metre = 0;  // slope by range
+  // Low-signal part at a peak of k_reference_counts; doubles at half of it.
+  double low_signal_m = 0;
   double range_min_m = 0;  // lower end of the measured ranges
   double range_max_m = 0;  // upper end; 0: not measured, the bias is 0
 
@@ -32,7 +33,8 @@ struct DepthBias {
     if (!is_measured()) return 0;
     const double range = std::max(range_min_m, std::min(range_m, range_max_m));
     const double counts = std::max<double>(peak, 1);
-    return offset_m + per_metre * (range - k_reference_m) + dim_m * (k_reference_counts / counts);
+    return offset_m + per_metre * (range - k_reference_m) +
+           low_signal_m * (k_reference_counts / counts);
   }
 };
 

@@ -27,7 +27,7 @@ struct Square {
 };
 
 // Index of the pixel that contains the coordinate, at least 0.
-int pixel_at(double place) { return place > 0 ? static_cast<int>(place) : 0; }
+int pixel_at(double coordinate) { return coordinate > 0 ? static_cast<int>(coordinate) : 0; }
 
 Square square_around(const DepthView& view, double outer) {
   const Vector2& middle = view.blob.centroid_px;
@@ -42,10 +42,10 @@ Square square_around(const DepthView& view, double outer) {
 }
 
 // Column, row and raw depth of a pixel in one word: one store, one load.
-class Reading {
+class DepthPixel {
  public:
-  Reading() = default;
-  Reading(int column, int row, std::uint16_t raw)
+  DepthPixel() = default;
+  DepthPixel(int column, int row, std::uint16_t raw)
       : all_(static_cast<std::uint32_t>(column | row << 8) | std::uint32_t{raw} << 16) {}
   [[nodiscard]] std::size_t column() const { return all_ & 0xFF; }
   [[nodiscard]] std::size_t row() const { return all_ >> 8 & 0xFF; }
@@ -56,8 +56,8 @@ class Reading {
 };
 static_assert(k_square_side_max_px <= 256);
 
-struct Readings {
-  std::array<Reading, k_square_max_px + 1> items;  // the last one is written, never counted
+struct DepthPixels {
+  std::array<DepthPixel, k_square_max_px + 1> items;  // the last one is written, never counted
   int count = 0;
   int tried = 0;
 };
@@ -77,18 +77,18 @@ struct Offsets {
 };
 
 // Annulus: pixels with inner <= distance < outer from the centroid that are not mostly background.
-struct Ring {
+struct Annulus {
   double inner_square, outer_square;
-  int reflectivity_least;
+  int reflectivity_min;
   [[nodiscard]] int holds(double distance_square, int reflectivity) const {
     return static_cast<int>(distance_square >= inner_square) &
            static_cast<int>(distance_square < outer_square) &
-           static_cast<int>(reflectivity >= reflectivity_least);
+           static_cast<int>(reflectivity >= reflectivity_min);
   }
 };
 
 // Disc: all pixels nearer than outer.
-struct WholeDisc {
+struct FullDisc {
   double outer_square;
   [[nodiscard]] int holds(double distance_square, int) const {
     return static_cast<int>(distance_square < outer_square);
@@ -99,7 +99,7 @@ struct WholeDisc {
 // every pixel and advances the count only for those: no branch depends on a pixel's value.
 template <class Shape, class Pixel>
 void read(const DepthView& view, const ImageView<Pixel>& reflectivity, const Square& square,
-          const Offsets& offsets, const Shape& shape, Readings& out) {
+          const Offsets& offsets, const Shape& shape, DepthPixels& out) {
   // A depth of 0 means none: 0 - 1U is large and fails the test.
   const unsigned raw_end = std::max<unsigned>(view.depth.invalid_from, 1) - 1;
   const int saturated_from = view.depth.saturated_from;
@@ -111,10 +111,10 @@ void read(const DepthView& view, const ImageView<Pixel>& reflectivity, const Squ
     const double dy = offsets.y[static_cast<std::size_t>(row)], dy_square = dy * dy;
     for (int column = 0; column < square.columns; ++column) {
       const double dx = offsets.x[static_cast<std::size_t>(column)];
-      const int held = shape.holds(dx * dx + dy_square, *bright);
-      out.items[static_cast<std::size_t>(count)] = Reading(column, row, *depth);
-      tried += held;
-      count += held & static_cast<int>(*depth - 1U < raw_end) &
+      const int inside = shape.holds(dx * dx + dy_square, *bright);
+      out.items[static_cast<std::size_t>(count)] = DepthPixel(column, row, *depth);
+      tried += inside;
+      count += inside & static_cast<int>(*depth - 1U < raw_end) &
                static_cast<int>(*bright < saturated_from);
       depth += square.step;
       bright += square.step;
@@ -126,22 +126,22 @@ void read(const DepthView& view, const ImageView<Pixel>& reflectivity, const Squ
 
 // Selects some of `all` indices, evenly spread so that all sides are represented: each the last of
 // its interval. Source: Bresenham, IBM Systems Journal 4 (1965): the line's error term.
-class Thinning {
+class Subsampling {
  public:
   // Requires 1 <= taken <= all.
-  Thinning(int all, int taken)
+  Subsampling(int all, int taken)
       : taken_(taken),
         stride_(all / taken),
         stride_rest_(all % taken),
         next_((all - 1) / taken),
         rest_((all - 1) % taken) {}
   [[nodiscard]] std::size_t next() {
-    const int place = next_;
+    const int index = next_;
     rest_ += stride_rest_;
     const bool over = rest_ >= taken_;
     next_ += stride_ + (over ? 1 : 0);
     rest_ -= over ? taken_ : 0;
-    return static_cast<std::size_t>(place);
+    return static_cast<std::size_t>(index);
   }
 
  private:
@@ -150,27 +150,27 @@ class Thinning {
 
 // Geometry of a pixel from the linearised lens: a quadratic form gives its ray's squared distance
 // from the centre ray; a factor converts depth along the axis to radial range.
-class Placing {
+class PixelGeometry {
  public:
-  explicit Placing(const DepthView& view)
+  explicit PixelGeometry(const DepthView& view)
       : rays_(view.rays),
-        xx_(both(rays_.along_x.squaredNorm())),
-        xy_(both(2 * rays_.along_x.dot(rays_.along_y))),
-        yy_(both(rays_.along_y.squaredNorm())),
-        unit_m_(both(view.depth.unit_m)),
+        xx_(broadcast_two(rays_.along_x.squaredNorm())),
+        xy_(broadcast_two(2 * rays_.along_x.dot(rays_.along_y))),
+        yy_(broadcast_two(rays_.along_y.squaredNorm())),
+        unit_m_(broadcast_two(view.depth.unit_m)),
         is_along_axis_(view.depth.kind == DepthKind::z) {}
 
-  void place(std::size_t at, const TwoDoubles& raw, const TwoDoubles& dx, const TwoDoubles& dy,
-             DepthSamples& out) const {
+  void compute(std::size_t at, const TwoDoubles& raw, const TwoDoubles& dx, const TwoDoubles& dy,
+               DepthSamples& out) const {
     const TwoDoubles beside = xx_ * dx * dx + xy_ * dx * dy + yy_ * dy * dy;
-    TwoDoubles factor = both(1);
+    TwoDoubles factor = broadcast_two(1);
     if (is_along_axis_) {
-      const TwoDoubles z =
-          both(rays_.ray.z()) + both(rays_.along_x.z()) * dx + both(rays_.along_y.z()) * dy;
-      factor = square_root(both(1) + beside) / greater(z, both(0.01));
+      const TwoDoubles z = broadcast_two(rays_.ray.z()) + broadcast_two(rays_.along_x.z()) * dx +
+                           broadcast_two(rays_.along_y.z()) * dy;
+      factor = square_root(broadcast_two(1) + beside) / maximum(z, broadcast_two(0.01));
     }
     store_two(raw * unit_m_, &out.range_m[at]);
-    store_two(beside, &out.beside_square[at]);
+    store_two(beside, &out.offset_square[at]);
     store_two(factor, &out.radial_factor[at]);
   }
 
@@ -181,19 +181,19 @@ class Placing {
 };
 
 // Writes at most `most` of the readings, in pairs; an odd last one is duplicated.
-void take(const DepthView& view, const Offsets& offsets, const Readings& readings, int most,
+void take(const DepthView& view, const Offsets& offsets, const DepthPixels& readings, int most,
           DepthSamples& out) {
   out.count = std::min(readings.count, most);
   if (out.count <= 0) return;
-  Thinning thinning(readings.count, out.count);
-  const Placing placing(view);
+  Subsampling subsampling(readings.count, out.count);
+  const PixelGeometry geometry(view);
   for (int i = 0; i < out.count; i += 2) {
-    const Reading a = readings.items[thinning.next()];
-    const Reading b = i + 1 < out.count ? readings.items[thinning.next()] : a;
+    const DepthPixel a = readings.items[subsampling.next()];
+    const DepthPixel b = i + 1 < out.count ? readings.items[subsampling.next()] : a;
     const TwoDoubles raw{static_cast<double>(a.raw()), static_cast<double>(b.raw())};
     const TwoDoubles dx{offsets.x[a.column()], offsets.x[b.column()]};
     const TwoDoubles dy{offsets.y[a.row()], offsets.y[b.row()]};
-    placing.place(static_cast<std::size_t>(i), raw, dx, dy, out);
+    geometry.compute(static_cast<std::size_t>(i), raw, dx, dy, out);
   }
 }
 
@@ -201,7 +201,7 @@ template <class Shape>
 void sample(const DepthView& view, const Square& square, const Shape& shape, int most,
             DepthSamples& out) {
   const Offsets offsets(square, view.blob.centroid_px);
-  Readings readings;
+  DepthPixels readings;
   if (view.frame.reflectivity_8.empty()) {
     read(view, view.frame.reflectivity_16, square, offsets, shape, readings);
   } else {
@@ -215,22 +215,22 @@ void sample(const DepthView& view, const Square& square, const Shape& shape, int
 
 }  // namespace
 
-void inner_samples(const DepthView& view, double radius_px, int most_samples,
+void inner_samples(const DepthView& view, double radius_px, int samples_max,
                    DepthSamples& out) noexcept {
   // The nearest pixel's centre is at most 0.71 px from any point.
   const double outer = std::clamp(k_inner_part * radius_px, 0.72, k_inner_radius_max_px);
-  sample(view, square_around(view, outer), WholeDisc{outer * outer},
-         std::min(most_samples, k_inner_samples_max), out);
+  sample(view, square_around(view, outer), FullDisc{outer * outer},
+         std::min(samples_max, k_inner_samples_max), out);
 }
 
-void ring_samples(const DepthView& view, double radius_px, int most_samples, int most_pixels,
-                  DepthSamples& out) noexcept {
+void annulus_samples(const DepthView& view, double radius_px, int samples_max, int pixels_max,
+                     DepthSamples& out) noexcept {
   const double outer = std::min(radius_px + k_rim_margin_px, k_scan_radius_max_px - 1.0);
   const double inner = std::min(k_inner_part * radius_px, outer);
   Square square = square_around(view, outer);
-  square.widen_step(std::min(most_pixels, k_square_max_px));
-  sample(view, square, Ring{inner * inner, outer * outer, view.blob.peak / 4},
-         std::min(most_samples, k_ring_samples_max), out);
+  square.widen_step(std::min(pixels_max, k_square_max_px));
+  sample(view, square, Annulus{inner * inner, outer * outer, view.blob.peak / 4},
+         std::min(samples_max, k_annulus_samples_max), out);
 }
 
 }  // namespace glint

@@ -24,11 +24,11 @@
 namespace glint {
 
 inline constexpr int k_inner_samples_max = 49;
-inline constexpr int k_ring_samples_max = k_range_values_max;
+inline constexpr int k_annulus_samples_max = k_range_values_max;
 inline constexpr int k_scan_radius_max_px = 40;
 // The square around a disc of the largest inner radius: always read completely.
 inline constexpr int k_inner_square_max_px = 9 * 9;
-static_assert(k_range_pixels_a_blob > k_inner_square_max_px);
+static_assert(k_range_pixels_per_blob > k_inner_square_max_px);
 // Maximum square read for the annulus, even if others leave more: 400 of these pixels are in it.
 inline constexpr int k_square_max_px = 32 * 32;
 
@@ -45,18 +45,18 @@ struct DepthView {
 struct DepthSamples {
   RangeValues range_m;        // along the pixel's ray or along the optical axis
   RangeValues radial_factor;  // factor to the radial range
-  RangeValues beside_square;  // its ray's squared distance from the centre ray at range 1
+  RangeValues offset_square;  // its ray's squared distance from the centre ray at range 1
   int count = 0;
   int tried = 0;   // pixels of the disc or annulus
   int usable = 0;  // of these with usable depth
   int pixels = 0;  // read
 };
 
-// radius_px: of the disc with the blob's area. Each writes at most most_samples samples;
-// ring_samples reads at most most_pixels pixels.
-void inner_samples(const DepthView& view, double radius_px, int most_samples,
+// radius_px: of the disc with the blob's area. Each writes at most samples_max samples;
+// annulus_samples reads at most pixels_max pixels.
+void inner_samples(const DepthView& view, double radius_px, int samples_max,
                    DepthSamples& out) noexcept GLINT_NONBLOCKING;
-void ring_samples(const DepthView& view, double radius_px, int most_samples, int most_pixels,
-                  DepthSamples& out) noexcept GLINT_NONBLOCKING;
+void annulus_samples(const DepthView& view, double radius_px, int samples_max, int pixels_max,
+                     DepthSamples& out) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -6,8 +6,9 @@
 
 namespace glint {
 
-double surprise_of(const ExpectedPose& expected, const Pose& found, const Matrix6& found_covariance,
-                   const Vector3& found_reference_m) noexcept {
+double mahalanobis_square(const PredictedPose& expected, const Pose& found,
+                          const Matrix6& found_covariance,
+                          const Vector3& found_reference_m) noexcept {
   const Vector3& reference = expected.reference_m;
   const Matrix6 both =
       expected.covariance +
@@ -16,7 +17,7 @@ double surprise_of(const ExpectedPose& expected, const Pose& found, const Matrix
   apart << found * reference - expected.T_camera_tool * reference,
       rotation_vector(found.rotation * expected.T_camera_tool.rotation.conjugate());
   const Result<PoseFactor> factor = pose_factor(both);
-  return factor ? apart.dot(factor.value.solve(apart)) : k_no_surprise_known;
+  return factor ? apart.dot(factor.value.solve(apart)) : k_mahalanobis_unknown;
 }
 
 }  // namespace glint

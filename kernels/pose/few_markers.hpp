@@ -30,51 +30,52 @@
 
 namespace glint {
 
-inline constexpr int k_few_max = 2;  // three give a pose
+inline constexpr int k_partial_markers_max = 2;  // three give a pose
 
-struct NamedMarker {
+struct IdentifiedMarker {
   int of_tool = 0;                     // index of the tool's marker
   Vector3 centre_m = Vector3::Zero();  // as measured, camera frame
   Matrix3 covariance_m2 = Matrix3::Zero();
 };
-struct FewMarkers {
-  std::array<NamedMarker, k_few_max> items;
+struct PartialMarkers {
+  std::array<IdentifiedMarker, k_partial_markers_max> items;
   int count = 0;
 };
 
 // A tool at its predicted pose. covariance: of the mean of its markers and of its rotation, about
 // the camera's axes.
-struct ExpectedTool {
+struct PredictedTool {
   const Tool* tool = nullptr;
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();
-  bool predicted = false;  // false: it has no gates
-  bool wanted = false;     // it has no labeling, so its markers are to be identified
+  bool predicted = false;       // false: it has no gates
+  bool needs_labeling = false;  // it has no labeling, so its markers are to be identified
 };
 
 using TakenMarkers = std::bitset<k_blobs_max>;
 
-struct FewScratch {
+struct PartialScratch {
   struct Gate {
-    Vector3 place_m = Vector3::Zero();
-    Matrix3 whiten = Matrix3::Zero();  // |whiten residual|^2 is its chi-square
-    bool apart = false;                // overlaps no other gate of the same tool
-    int held = 0;                      // markers in it that no labeling contains
-    int marker = -1;                   // the last of them
+    Vector3 predicted_m = Vector3::Zero();
+    Matrix3 whitening = Matrix3::Zero();  // |whitening * residual|^2 is its chi-square
+    bool is_disjoint = false;             // overlaps no other gate of the same tool
+    int free_count = 0;                   // markers in it that no labeling contains
+    int marker = -1;                      // the last of them
   };
   std::array<std::array<Gate, k_markers_per_tool_max>, k_tools_max> gates;
-  std::array<std::uint8_t, k_blobs_max> claims{};  // number of gates that contain the marker
-  std::array<double, k_blobs_max> range_m{};       // ranges of marker centres for the current tool
+  std::array<std::uint8_t, k_blobs_max> gate_count{};  // number of gates that contain the marker
+  std::array<double, k_blobs_max> range_m{};  // ranges of marker centres for the current tool
 };
 
-struct FewWork {
+struct PartialWork {
   int gates = 0;
   int tests = 0;  // of a marker in a gate; its range, once per tool, counts as one
 };
 
 // taken: markers of labelings. Reads at most markers_max markers. `named` has one element per tool.
-FewWork name_few(std::span<const ExpectedTool> tools, const Markers& markers, int markers_max,
-                 const TakenMarkers& taken, const MarkerNoise& noise, FewScratch& scratch,
-                 std::span<FewMarkers> named) noexcept GLINT_NONBLOCKING;
+PartialWork identify_partial(std::span<const PredictedTool> tools, const Markers& markers,
+                             int markers_max, const TakenMarkers& taken, const MarkerNoise& noise,
+                             PartialScratch& scratch,
+                             std::span<PartialMarkers> named) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -18,7 +18,7 @@ struct Labeling {
   double rms_m = 0;  // of the rigid fit over them
   // Log prior ratio, scaled to m^2, if every marker is within the gate of its predicted position;
   // else 0. Tools that claim the same markers are compared by count rms^2 minus this.
-  double predicted_worth_m2 = 0;
+  double log_prior_ratio_m2 = 0;
   Pose T_camera_tool;  // pose of that fit
 };
 

@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-bool stands_before(const Labeling& a, const Labeling& b) {
+bool precedes(const Labeling& a, const Labeling& b) {
   if (a.count != b.count) return a.count > b.count;
   if (a.rms_m != b.rms_m) return a.rms_m < b.rms_m;
   return a.marker < b.marker;
@@ -28,7 +28,7 @@ LabelingSearch::LabelingSearch(const Tool& tool, const CorrespondSettings& setti
   chosen_.fill(-1);
 }
 
-bool LabelingSearch::spend(int steps) {
+bool LabelingSearch::use_steps(int steps) {
   if (work_.steps + steps > settings_.search_steps_max) full_ = true;
   if (!full_) work_.steps += steps;
   return !full_;
@@ -40,13 +40,13 @@ std::uint64_t LabelingSearch::word_at(int level, int i, int w) const {
 
 // The next candidate for marker i, or -1.
 int LabelingSearch::next_candidate(int i) {
-  Place& place = place_[i];
-  while (place.rest == 0) {
-    if (++place.word >= candidates_.words) return -1;
-    place.rest = word_at(place.named, i, place.word);
+  MarkerState& state = states_[i];
+  while (state.rest == 0) {
+    if (++state.word >= candidates_.words) return -1;
+    state.rest = word_at(state.assigned, i, state.word);
   }
-  const int a = place.word * 64 + std::countr_zero(place.rest);
-  place.rest &= place.rest - 1;
+  const int a = state.word * 64 + std::countr_zero(state.rest);
+  state.rest &= state.rest - 1;
   return a;
 }
 
@@ -57,14 +57,14 @@ int LabelingSearch::narrow(int level, int i, int a) {
   std::uint64_t* const to = sets_[level + 1].word.data();
   const int words = candidates_.words;
   work_.words_narrowed += matches_.words_a_row();
-  int possible = 0;
+  int assignable = 0;
   if (words == 1) {  // the usual case, without the inner loop
     for (int j = i + 1; j < tool_.marker_count; ++j) {
       const std::uint64_t both = from[j] & row[j];
       to[j] = both;
-      possible += both != 0 ? 1 : 0;
+      assignable += both != 0 ? 1 : 0;
     }
-    return possible;
+    return assignable;
   }
   for (int j = i + 1, at = (i + 1) * words; j < tool_.marker_count; ++j) {
     std::uint64_t any = 0;
@@ -72,15 +72,15 @@ int LabelingSearch::narrow(int level, int i, int a) {
       to[at] = from[at] & row[at];
       any |= to[at];
     }
-    possible += any != 0 ? 1 : 0;
+    assignable += any != 0 ? 1 : 0;
   }
-  return possible;
+  return assignable;
 }
 
 void LabelingSearch::run(const CandidateSets& allowed, int target) noexcept {
   const int markers = tool_.marker_count;
   const int words = candidates_.words;
-  Place& root = place_[0];
+  MarkerState& root = states_[0];
   root = {};
   for (int j = 0; j < markers; ++j) {
     std::uint64_t any = 0;
@@ -89,49 +89,49 @@ void LabelingSearch::run(const CandidateSets& allowed, int target) noexcept {
       sets_[0].word[j * words + w] = viable;
       any |= viable;
     }
-    root.possible += any != 0 ? 1 : 0;
+    root.assignable += any != 0 ? 1 : 0;
   }
-  if (root.possible < target) return;
+  if (root.assignable < target) return;
   root.rest = word_at(0, 0, 0);
   // Each iteration tries one assignment or goes back by one marker. An assignment is a step, so the
   // step budget ends the loop.
   for (int i = 0; i >= 0;) {
-    Place& place = place_[i];
-    Place& next = place_[i + 1];
-    if (place.left_out) {
+    MarkerState& state = states_[i];
+    MarkerState& next = states_[i + 1];
+    if (state.skipped) {
       --i;
       continue;
     }
     const int a = next_candidate(i);
     if (a < 0) {
       chosen_[i] = -1;
-      place.left_out = true;
-      next.named = place.named;
+      state.skipped = true;
+      next.assigned = state.assigned;
       std::uint64_t any = 0;
-      for (int w = 0; w < words; ++w) any |= word_at(place.named, i, w);
-      next.possible = place.possible - (any != 0 ? 1 : 0);
+      for (int w = 0; w < words; ++w) any |= word_at(state.assigned, i, w);
+      next.assignable = state.assignable - (any != 0 ? 1 : 0);
     } else {
-      if (!spend(1)) break;
+      if (!use_steps(1)) break;
       ++found_.hypotheses;
       chosen_[i] = static_cast<std::int16_t>(a);
-      next.named = place.named + 1;
-      next.possible = narrow(place.named, i, a);
+      next.assigned = state.assigned + 1;
+      next.assignable = narrow(state.assigned, i, a);
     }
-    if (next.named == target) {
-      judge(target);
+    if (next.assigned == target) {
+      fit_and_keep(target);
       if (full_) break;
-    } else if (i + 1 < markers && next.named + next.possible >= target) {
+    } else if (i + 1 < markers && next.assigned + next.assignable >= target) {
       ++i;
       next.word = 0;
-      next.rest = word_at(next.named, i, 0);
-      next.left_out = false;
+      next.rest = word_at(next.assigned, i, 0);
+      next.skipped = false;
     }
   }
   chosen_.fill(-1);
 }
 
 // Fits a complete labeling and keeps it if it is among the best.
-void LabelingSearch::judge(int target) {
+void LabelingSearch::fit_and_keep(int target) {
   Labeling labeling;
   labeling.count = target;
   std::array<Vector3, k_markers_per_tool_max> model;
@@ -149,7 +149,7 @@ void LabelingSearch::judge(int target) {
   for (int k = 0; k < found_.count; ++k) {
     if (found_.items[k].marker == labeling.marker) return;
   }
-  if (!spend(k_fit_steps)) return;
+  if (!use_steps(k_fit_steps)) return;
   const RigidFit fit = fit_rigid({model.data(), n}, {measured.data(), n});
   if (fit.reason != Reason::none) return;
   if (!(fit.rms_m <= settings_.max_rms_m)) {
@@ -158,16 +158,16 @@ void LabelingSearch::judge(int target) {
   }
   labeling.rms_m = fit.rms_m;
   labeling.T_camera_tool = fit.transform;
-  keep(labeling);
+  insert(labeling);
 }
 
-void LabelingSearch::keep(const Labeling& labeling) {
-  int place = found_.count;
-  while (place > 0 && stands_before(labeling, found_.items[place - 1])) --place;
-  if (place == k_labelings_max) return;
+void LabelingSearch::insert(const Labeling& labeling) {
+  int slot = found_.count;
+  while (slot > 0 && precedes(labeling, found_.items[slot - 1])) --slot;
+  if (slot == k_labelings_max) return;
   found_.count = std::min(found_.count + 1, k_labelings_max);
-  for (int k = found_.count - 1; k > place; --k) found_.items[k] = found_.items[k - 1];
-  found_.items[place] = labeling;
+  for (int k = found_.count - 1; k > slot; --k) found_.items[k] = found_.items[k - 1];
+  found_.items[slot] = labeling;
 }
 
 }  // namespace glint

@@ -42,20 +42,20 @@ class LabelingSearch {
     std::array<std::uint64_t, k_markers_per_tool_max*(k_blobs_max / 64)> word;
   };
   // State of the search at one tool marker.
-  struct Place {
-    int named = 0;           // markers assigned before this one: the level of the sets in force
-    int possible = 0;        // markers from this one on that may still be assigned
+  struct MarkerState {
+    int assigned = 0;        // markers assigned before this one: the level of the sets in force
+    int assignable = 0;      // markers from this one on that may still be assigned
     int word = 0;            // index of the set's current word
     std::uint64_t rest = 0;  // candidates left in that word
-    bool left_out = false;   // every candidate was tried; now the marker stays unassigned
+    bool skipped = false;    // every candidate was tried; now the marker stays unassigned
   };
 
-  [[nodiscard]] bool spend(int steps);
+  [[nodiscard]] bool use_steps(int steps);
   [[nodiscard]] std::uint64_t word_at(int level, int i, int w) const;
   [[nodiscard]] int next_candidate(int i);
   [[nodiscard]] int narrow(int level, int i, int a);
-  void judge(int target);
-  void keep(const Labeling& labeling);
+  void fit_and_keep(int target);
+  void insert(const Labeling& labeling);
 
   const Tool& tool_;
   const CorrespondSettings& settings_;
@@ -64,7 +64,7 @@ class LabelingSearch {
   Labelings& found_;
   PartnerCounts partners_;
   std::array<Sets, k_markers_per_tool_max + 1> sets_;
-  std::array<Place, k_markers_per_tool_max + 1> place_;
+  std::array<MarkerState, k_markers_per_tool_max + 1> states_;
   std::array<std::int16_t, k_markers_per_tool_max> chosen_{};
   SearchWork work_;
   bool full_ = false;

@@ -12,7 +12,7 @@ Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, in
   local.pixel = pixel;
   const auto look_up = [&](const Vector2& at) {
     const Result<Vector3> found = unproject(camera, at);
-    lens_steps += found ? k_lens_steps_a_ray_looked_up : 0;
+    lens_steps += found ? k_lens_steps_per_table_ray : 0;
     return found;
   };
   const Result<Vector3> middle = look_up(pixel);
@@ -40,8 +40,8 @@ Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, in
 Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel, int steps_max,
                              int& lens_steps) noexcept {
   if (camera.lens == Lens::lut) return from_table(camera, pixel, lens_steps);
-  const Result<TurningRay> turning = unproject_turning(camera, pixel, steps_max, lens_steps);
-  const TurningRay& found = turning.value;
+  const Result<RayJacobian> turning = unproject_with_jacobian(camera, pixel, steps_max, lens_steps);
+  const RayJacobian& found = turning.value;
   LocalRays local{pixel, found.ray, found.along_x, found.along_y};
   local.set_outward({camera.cx, camera.cy});
   return {local, turning.reason};
@@ -57,7 +57,8 @@ int ray_steps_needed(const CameraModel& camera) noexcept {
       const Vector2 pixel{static_cast<double>(column) * camera.width / k_grid_cells,
                           static_cast<double>(row) * camera.height / k_grid_cells};
       int steps = 0;
-      if (unproject_turning(camera, pixel, k_ray_steps_max, steps)) most = std::max(most, steps);
+      if (unproject_with_jacobian(camera, pixel, k_ray_steps_max, steps))
+        most = std::max(most, steps);
     }
   }
   return std::min(most + 1, k_ray_steps_max);

@@ -21,11 +21,11 @@ struct LocalRays {
   Vector3 outward = Vector3::Zero();  // change of the ray per relative change of the focal length
 
   // Perpendicular offset of a pixel's ray from the centre ray, at range 1.
-  [[nodiscard]] Vector3 sideways(const Vector2& at) const {
+  [[nodiscard]] Vector3 perpendicular_offset(const Vector2& at) const {
     return along_x * (at.x() - pixel.x()) + along_y * (at.y() - pixel.y());
   }
   // principal_px: the principal point.
-  void set_outward(const Vector2& principal_px) { outward = -sideways(principal_px); }
+  void set_outward(const Vector2& principal_px) { outward = -perpendicular_offset(principal_px); }
   [[nodiscard]] double steradian_per_pixel() const { return along_x.cross(along_y).norm(); }
 };
 
@@ -35,10 +35,10 @@ struct LocalRays {
                                            int steps_max,
                                            int& lens_steps) noexcept GLINT_NONBLOCKING;
 
-inline constexpr int k_lens_steps_a_ray_looked_up = 2;
-inline constexpr int k_rays_looked_up_max = 3;  // the pixel's own and a neighbour in x and y
+inline constexpr int k_lens_steps_per_table_ray = 2;
+inline constexpr int k_table_rays_max = 3;  // the pixel's own and a neighbour in x and y
 // Steps of a table, whatever steps_max is.
-inline constexpr int k_table_ray_steps = k_rays_looked_up_max * k_lens_steps_a_ray_looked_up;
+inline constexpr int k_table_ray_steps = k_table_rays_max * k_lens_steps_per_table_ray;
 static_assert(k_table_ray_steps <= k_ray_steps_max);
 
 // Steps that this lens needs for its rays: the maximum over a grid of pixels of the frame, plus

@@ -11,13 +11,13 @@
 namespace glint {
 
 enum MarkerFlag : std::uint8_t {
-  k_marker_no_depth = 1,    // no range from inner disc or annulus: never labelled
-  k_marker_ring_depth = 2,  // centre saturated or without depth; range from the annulus
-  k_marker_wrapped = 4,     // range was wrapped and has been unwrapped
+  k_marker_no_depth = 1,       // no range from inner disc or annulus: never labelled
+  k_marker_annulus_depth = 2,  // centre saturated or without depth; range from the annulus
+  k_marker_wrapped = 4,        // range was wrapped and has been unwrapped
   k_marker_saturated = 8,
   k_marker_touches_edge = 16,
   k_marker_has_neighbour = 32,  // light of another blob at two pixels' distance
-  k_marker_uneven = 64,         // box or area is not one marker's: merged, or partially occluded
+  k_marker_not_isolated = 64,   // box or area is not one marker's: merged, or partially occluded
 };
 
 // The marker's surface point is ray * surface_range_m. A sphere's centre is its radius farther
@@ -36,8 +36,8 @@ struct Marker {
   // pixels. Errors common to all of its pixels are not included. 0: unknown.
   std::array<float, 2> sigma_px{};
   float range_sigma_m = 0;
-  float bias_taken_m = 0;  // the camera's depth bias, already subtracted from surface_range_m
-  std::uint16_t peak = 0;  // the brightest pixel, raw; 0: a point without an image
+  float bias_subtracted_m = 0;  // the camera's depth bias, already subtracted from surface_range_m
+  std::uint16_t peak = 0;       // the brightest pixel, raw; 0: a point without an image
 };
 
 struct Markers {

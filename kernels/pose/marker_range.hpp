@@ -18,7 +18,7 @@ namespace glint {
 [[nodiscard]] inline double centre_range_m(const Marker& marker, const Tool& tool) noexcept {
   double surface = marker.surface_range_m;
   if (tool.depth_bias.is_measured() && marker.peak > 0) {
-    const double raw = surface + static_cast<double>(marker.bias_taken_m);
+    const double raw = surface + static_cast<double>(marker.bias_subtracted_m);
     surface = raw - tool.depth_bias.at(raw, marker.peak);
   }
   return surface + tool.centre_offset_m();

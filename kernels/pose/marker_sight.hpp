@@ -31,17 +31,17 @@ struct MarkerNoise {
 };
 
 // Lower limits of the sigmas, whatever is declared: an exact marker would have no weight.
-inline constexpr double k_pixel_sigma_least_px = 0.01;
-inline constexpr double k_range_sigma_least_m = 0.0001;
+inline constexpr double k_pixel_sigma_min_px = 0.01;
+inline constexpr double k_range_sigma_min_m = 0.0001;
 
-struct MarkerSight {
+struct MarkerMeasurementModel {
   LocalRays rays;
   MarkerVariance variance;
 };
 
 // range_m: to the marker's centre, positive. A sigma of 0 in the marker is unknown: only the
 // declared one counts.
-[[nodiscard]] MarkerSight sight_of(const Marker& marker, double range_m,
-                                   const MarkerNoise& noise) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] MarkerMeasurementModel measurement_model(
+    const Marker& marker, double range_m, const MarkerNoise& noise) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

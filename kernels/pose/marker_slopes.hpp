@@ -18,16 +18,18 @@
 
 namespace glint {
 
-struct MarkerSlopes {
-  Vector6 farther;                    // error of the measured range, 1 m
-  Vector6 right, down;                // error of the measured centroid, 1 px
-  Vector6 outward;                    // error of the focal length, as a ratio
-  Eigen::Matrix<double, 6, 3> moved;  // error of its position in the tool, 1 m, camera's axes
+struct MarkerSensitivity {
+  Vector6 by_range;                         // error of the measured range, 1 m
+  Vector6 by_pixel_x, by_pixel_y;           // error of the measured centroid, 1 px
+  Vector6 by_focal;                         // error of the focal length, as a ratio
+  Eigen::Matrix<double, 6, 3> by_position;  // error of its position in the tool, 1 m, camera's axes
 };
 
 // point: the marker's position by the pose, camera frame; lever: from the markers' mean to it.
-[[nodiscard]] inline MarkerSlopes marker_slopes(const WeightedMarker& marker, const LocalRays& rays,
-                                                const Vector3& point, const Vector3& lever) {
+[[nodiscard]] inline MarkerSensitivity marker_sensitivity(const WeightedMarker& marker,
+                                                          const LocalRays& rays,
+                                                          const Vector3& point,
+                                                          const Vector3& lever) {
   const double inverse = 1 / marker.ray.dot(point);
   const double distance = std::sqrt(point.squaredNorm());
   const auto across = [&](const Vector3& direction) -> Vector3 {
@@ -44,13 +46,13 @@ struct MarkerSlopes {
   const auto turned = [&](const Vector3& turn) -> Vector6 {
     return rows[0] * marker.across_first.dot(turn) + rows[1] * marker.across_second.dot(turn);
   };
-  MarkerSlopes slopes;
-  slopes.farther = rows[2] * marker.per_range_sigma;
-  slopes.right = turned(rays.along_x);
-  slopes.down = turned(rays.along_y);
-  slopes.outward = turned(rays.outward);
+  MarkerSensitivity slopes;
+  slopes.by_range = rows[2] * marker.per_range_sigma;
+  slopes.by_pixel_x = turned(rays.along_x);
+  slopes.by_pixel_y = turned(rays.along_y);
+  slopes.by_focal = turned(rays.outward);
   for (int axis = 0; axis < 3; ++axis) {
-    slopes.moved.col(axis) =
+    slopes.by_position.col(axis) =
         rows[0] * gradients[0](axis) + rows[1] * gradients[1](axis) + rows[2] * gradients[2](axis);
   }
   return slopes;

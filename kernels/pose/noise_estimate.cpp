@@ -35,7 +35,7 @@ class Kind {
     const double own = std::max(variance - declared_, 0.0);
     const double square = std::min(sigmas * sigmas, k_clip_square * free) * variance;
     sum_.squares += weight * (square - free * own);
-    sum_.freedom += weight * free;
+    sum_.redundancy += weight * free;
   }
   [[nodiscard]] const ResidualSum& sum() const { return sum_; }
 
@@ -48,31 +48,33 @@ double variance_of(double sigma) { return sigma * sigma; }
 
 // Updates the sum and returns the variance of all ranges or pixels; the declared one has the weight
 // of some residuals.
-double update(const ResidualSum& newest, double declared, double least, double most, bool known,
-              ResidualSum& sum) {
-  if (!known)
-    sum = {k_noise_declared_worth * declared, k_noise_declared_worth, k_noise_declared_worth};
-  const double kept = std::max(0.0, 1 - newest.freedom / k_noise_memory);
+double update(const ResidualSum& newest, double declared, double least, double most,
+              bool has_residuals, ResidualSum& sum) {
+  if (!has_residuals)
+    sum = {k_noise_declared_weight * declared, k_noise_declared_weight, k_noise_declared_weight};
+  const double kept = std::max(0.0, 1 - newest.redundancy / k_noise_memory);
   sum.squares = kept * sum.squares + newest.squares;
-  sum.freedom = kept * sum.freedom + newest.freedom;
+  sum.redundancy = kept * sum.redundancy + newest.redundancy;
   sum.declared *= kept;
-  return std::clamp(sum.squares / sum.freedom, least, most);
+  return std::clamp(sum.squares / sum.redundancy, least, most);
 }
 
 // Ratio of the estimate with the largest variance as initial value to the current one; at least 1.
-double doubt_of(const ResidualSum& sum, double sigma, double declared_sigma) {
-  const double open = k_noise_open_worth * sum.declared / k_noise_declared_worth;
-  const double seen = sum.freedom - sum.declared;
-  const double largest = k_noise_variance_open * variance_of(declared_sigma) / variance_of(sigma);
+double inflation_of(const ResidualSum& sum, double sigma, double declared_sigma) {
+  const double open = k_noise_inflated_weight * sum.declared / k_noise_declared_weight;
+  const double seen = sum.redundancy - sum.declared;
+  const double largest =
+      k_noise_variance_inflation * variance_of(declared_sigma) / variance_of(sigma);
   return std::max(1.0, (seen + open * largest) / (seen + open));
 }
 
 }  // namespace
 
-double variance_doubt(const NoiseEstimate& estimate, const MarkerNoise& declared) noexcept {
-  if (!estimate.known) return k_noise_variance_open;
-  return std::max(doubt_of(estimate.sums.range, estimate.range_sigma_m, declared.range_sigma_m),
-                  doubt_of(estimate.sums.pixel, estimate.pixel_sigma_px, declared.pixel_sigma_px));
+double variance_inflation(const NoiseEstimate& estimate, const MarkerNoise& declared) noexcept {
+  if (!estimate.has_residuals) return k_noise_variance_inflation;
+  return std::max(
+      inflation_of(estimate.sums.range, estimate.range_sigma_m, declared.range_sigma_m),
+      inflation_of(estimate.sums.pixel, estimate.pixel_sigma_px, declared.pixel_sigma_px));
 }
 
 MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
@@ -112,14 +114,14 @@ MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
 
 void add(const MarkerResiduals& residuals, const MarkerNoise& declared,
          NoiseEstimate& estimate) noexcept {
-  if (!(residuals.range.freedom > 0 && residuals.pixel.freedom > 0)) return;
-  estimate.range_sigma_m = std::sqrt(update(
-      residuals.range, variance_of(declared.range_sigma_m), variance_of(k_range_sigma_least_m),
-      variance_of(k_range_sigma_most_m), estimate.known, estimate.sums.range));
+  if (!(residuals.range.redundancy > 0 && residuals.pixel.redundancy > 0)) return;
+  estimate.range_sigma_m = std::sqrt(
+      update(residuals.range, variance_of(declared.range_sigma_m), variance_of(k_range_sigma_min_m),
+             variance_of(k_range_sigma_max_m), estimate.has_residuals, estimate.sums.range));
   estimate.pixel_sigma_px = std::sqrt(update(
-      residuals.pixel, variance_of(declared.pixel_sigma_px), variance_of(k_pixel_sigma_least_px),
-      variance_of(k_pixel_sigma_most_px), estimate.known, estimate.sums.pixel));
-  estimate.known = true;
+      residuals.pixel, variance_of(declared.pixel_sigma_px), variance_of(k_pixel_sigma_min_px),
+      variance_of(k_pixel_sigma_max_px), estimate.has_residuals, estimate.sums.pixel));
+  estimate.has_residuals = true;
 }
 
 }  // namespace glint

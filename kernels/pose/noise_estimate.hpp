@@ -28,9 +28,9 @@ namespace glint {
 
 // Units: of ranges m^2, of pixels px^2.
 struct ResidualSum {
-  double squares = 0;   // in excess of the markers' own variances; may be negative
-  double freedom = 0;   // redundancy: degrees of freedom of these residuals
-  double declared = 0;  // part of the redundancy from the declared noise
+  double squares = 0;     // in excess of the markers' own variances; may be negative
+  double redundancy = 0;  // degrees of freedom of these residuals
+  double declared = 0;    // part of the redundancy from the declared noise
 };
 struct MarkerResiduals {
   ResidualSum range, pixel;
@@ -46,32 +46,32 @@ struct MarkerResiduals {
 
 inline constexpr double k_noise_memory = 300;  // degrees of freedom
 // Weight of the declared noise, in degrees of freedom.
-inline constexpr double k_noise_declared_worth = 8;
+inline constexpr double k_noise_declared_weight = 8;
 // Upper limits of the sigmas: larger residuals are not noise.
-inline constexpr double k_range_sigma_most_m = 0.02;
-inline constexpr double k_pixel_sigma_most_px = 1;
+inline constexpr double k_range_sigma_max_m = 0.02;
+inline constexpr double k_pixel_sigma_max_px = 1;
 
 struct NoiseEstimate {
   MarkerResiduals sums;
   double range_sigma_m = 0, pixel_sigma_px = 0;  // from the sums
-  bool known = false;                            // false: no residual yet
+  bool has_residuals = false;                    // false: no residual yet
 };
 
 // Before the first residuals the variances may exceed the declared ones by this factor: published
 // HoloLens-class range noise is 1.5 to 5 mm. The larger value has a weight of at most
-// k_noise_open_worth degrees of freedom.
-inline constexpr double k_noise_variance_open = 10;
-inline constexpr double k_noise_open_worth = 3;
+// k_noise_inflated_weight degrees of freedom.
+inline constexpr double k_noise_variance_inflation = 10;
+inline constexpr double k_noise_inflated_weight = 3;
 
-// Returns the factor by which the variances may exceed the estimate: k_noise_variance_open before
-// the first residuals, about 1 after k_noise_memory.
-[[nodiscard]] double variance_doubt(const NoiseEstimate& estimate,
-                                    const MarkerNoise& declared) noexcept GLINT_NONBLOCKING;
+// Returns the factor by which the variances may exceed the estimate: k_noise_variance_inflation
+// before the first residuals, about 1 after k_noise_memory.
+[[nodiscard]] double variance_inflation(const NoiseEstimate& estimate,
+                                        const MarkerNoise& declared) noexcept GLINT_NONBLOCKING;
 
 // Returns the estimate, or the declared noise before the first residuals.
 [[nodiscard]] inline MarkerNoise noise_now(const NoiseEstimate& estimate,
                                            const MarkerNoise& declared) {
-  if (!estimate.known) return declared;
+  if (!estimate.has_residuals) return declared;
   return {estimate.range_sigma_m, estimate.pixel_sigma_px, declared.focal_px,
           declared.principal_px};
 }

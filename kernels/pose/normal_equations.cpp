@@ -6,13 +6,13 @@ namespace glint {
 namespace {
 
 // Minimum depth of a point along its measured ray, as a part of the measured range.
-constexpr double k_depth_part_least = 0.1;
+constexpr double k_depth_part_min = 0.1;
 
 // Sums of one marker: gradient * gradient' (its lower triangle) and gradient * residual. The
 // rotation part of every row is lever x gradient, so it is computed once per marker.
 struct PointSums {
   double xx = 0, yx = 0, zx = 0, yy = 0, zy = 0, zz = 0;
-  Vector3 slope = Vector3::Zero();
+  Vector3 gradient_sum = Vector3::Zero();
   double squares = 0;
 
   void add(double residual, const Vector3& gradient) {
@@ -22,7 +22,7 @@ struct PointSums {
     yy += gradient.y() * gradient.y();
     zy += gradient.z() * gradient.y();
     zz += gradient.z() * gradient.z();
-    slope += gradient * residual;
+    gradient_sum += gradient * residual;
     squares += residual * residual;
   }
 };
@@ -51,8 +51,8 @@ void add_point(const PointSums& sums, const Vector3& lever, NormalEquations& nor
   m(4, 4) += twice_y.y();
   m(5, 4) += twice_y.z();
   m(5, 5) += lever.x() * row_z.y() - lever.y() * row_z.x();
-  normal.slope.head<3>() += sums.slope;
-  normal.slope.tail<3>() += lever.cross(sums.slope);
+  normal.gradient.head<3>() += sums.gradient_sum;
+  normal.gradient.tail<3>() += lever.cross(sums.gradient_sum);
   normal.chi_square += sums.squares;
 }
 
@@ -66,7 +66,7 @@ bool add_markers(std::span<const WeightedMarker> markers, const Pose& T_camera_t
     const Vector3 lever = rotation * (marker.model_m - mean_m);
     const Vector3 point = mean + lever;
     const double along = marker.ray.dot(point);
-    if (!(along > k_depth_part_least * marker.range_m)) return false;
+    if (!(along > k_depth_part_min * marker.range_m)) return false;
     const double inverse = 1 / along;
     const double first = marker.across_first.dot(point) * inverse;
     const double second = marker.across_second.dot(point) * inverse;

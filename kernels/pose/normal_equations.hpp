@@ -22,7 +22,7 @@ namespace glint {
 
 struct NormalEquations {
   Matrix6 matrix = Matrix6::Zero();  // lower triangle only
-  Vector6 slope = Vector6::Zero();
+  Vector6 gradient = Vector6::Zero();
   double chi_square = 0;
 };
 

@@ -14,7 +14,7 @@ constexpr float k_too_far_m2 = k_too_far_m * k_too_far_m;
 static_assert(k_blobs_max % k_lanes == 0);
 
 // Rounds up to whole lanes.
-int whole_lanes(int count) { return (count + k_lanes - 1) / k_lanes * k_lanes; }
+int round_up_to_lanes(int count) { return (count + k_lanes - 1) / k_lanes * k_lanes; }
 
 // The tool's distances, each in all lanes, and the start of the rows for its two markers.
 struct ToolPairs {
@@ -55,7 +55,7 @@ Columns columns_of(const Candidates& candidates) {
     columns.ray_z[a] = static_cast<float>(candidates.ray[a].z());
     columns.variance[a] = static_cast<float>(candidates.across_variance_m2[a]);
   }
-  for (int a = candidates.count; a < whole_lanes(candidates.count); ++a) {
+  for (int a = candidates.count; a < round_up_to_lanes(candidates.count); ++a) {
     columns.x[a] = columns.y[a] = columns.z[a] = k_too_far_m;
     columns.ray_x[a] = columns.ray_y[a] = columns.ray_z[a] = 0;
     columns.variance[a] = 0;
@@ -126,8 +126,8 @@ void compare(const Gates& gates, const ToolPairs& pairs, int begin, int end, std
 using Partnered = std::array<CandidateSet, k_tool_pairs_max>;
 
 // Adds the partners in word w of candidate a's row, and a itself if there are any.
-void note_partners(const ToolPairs& pairs, const std::uint64_t* row, int a, int w,
-                   Partnered& partnered) {
+void add_partners(const ToolPairs& pairs, const std::uint64_t* row, int a, int w,
+                  Partnered& partnered) {
   for (int p = 0; p < pairs.count; ++p) {
     const std::uint64_t near_a = row[pairs.row[p]];
     partnered[p].word[w] |= near_a;
@@ -136,8 +136,8 @@ void note_partners(const ToolPairs& pairs, const std::uint64_t* row, int a, int 
 }
 
 // Copies a block's matches into the rows of the matched candidates, all before `end`.
-void note_for_the_found(const ToolPairs& pairs, const Found& found, int block, int end,
-                        PairMatches& matches) {
+void copy_to_matched_rows(const ToolPairs& pairs, const Found& found, int block, int end,
+                          PairMatches& matches) {
   const int row_words = matches.words_a_row();
   for (int b = 0; b < end; ++b) {
     std::uint64_t* const row = &matches.word[b * row_words + block / 64];
@@ -170,16 +170,16 @@ PairWork match_pairs(const Candidates& candidates, const Tool& tool,
       std::fill_n(found[b / k_lanes].begin(), pairs.count, BitLanes{});
     for (int a = block; a < end; ++a) {
       // Pad to whole lanes. Candidate a cannot match itself; matches of those after a are valid.
-      const int others = whole_lanes(a);
+      const int others = round_up_to_lanes(a);
       gates_of(columns, a, others, settings, gates);
       for (int w = 0; w < matches.words; ++w) {
         compare(gates, pairs, 64 * w, std::min(others, 64 * (w + 1)),
                 std::uint32_t{1} << (a - block), found,
                 &matches.word[a * matches.words_a_row() + w]);
-        note_partners(pairs, &matches.word[a * matches.words_a_row() + w], a, w, partnered);
+        add_partners(pairs, &matches.word[a * matches.words_a_row() + w], a, w, partnered);
       }
     }
-    note_for_the_found(pairs, found, block, end, matches);
+    copy_to_matched_rows(pairs, found, block, end, matches);
   }
   for (int p = 0; p < pairs.count; ++p) {
     matches.partnered[pairs.i[p]][pairs.j[p]] = partnered[p];

@@ -7,7 +7,7 @@ namespace {
 
 // Minimum pivot, relative to its diagonal element. In a direction that the matrix does not
 // determine, rounding leaves 1e-15.
-constexpr double k_left_least = 1e-12;
+constexpr double k_pivot_min = 1e-12;
 
 }  // namespace
 
@@ -17,7 +17,7 @@ Result<PoseFactor> pose_factor(const Matrix6& matrix) noexcept {
   for (int c = 0; c < 6; ++c) {
     double square = matrix(c, c);
     for (int k = 0; k < c; ++k) square -= lower(c, k) * lower(c, k);
-    const bool left = square > k_left_least * matrix(c, c) && matrix(c, c) > 0;
+    const bool left = square > k_pivot_min * matrix(c, c) && matrix(c, c) > 0;
     if (!left || !std::isfinite(square)) return {{}, Reason::degenerate};
     const double inverse = 1 / std::sqrt(square);
     result.value.inverse_diagonal(c) = inverse;

@@ -19,7 +19,7 @@ void add_prior(const PosePrior& prior, const Pose& T_camera_tool, const Vector3&
   miss << away, turned;
   const Matrix6 weighted = change.transpose() * prior.information;
   normal.matrix += weighted * change;
-  normal.slope += weighted * miss;
+  normal.gradient += weighted * miss;
   normal.chi_square += miss.dot(prior.information * miss);
 }
 

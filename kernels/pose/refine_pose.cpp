@@ -21,16 +21,16 @@ struct Task {
   const Vector3& reference_m;
   const PosePrior* prior;
   const RefineSettings& settings;
-  const ExpectedPose* expected;
+  const PredictedPose* expected;
 };
 
 // A fit, the covariance of its reference, and its squared Mahalanobis distance from the prediction.
 struct Minimum {
   WeightedFit fit;
   Matrix6 covariance = Matrix6::Zero();
-  double surprise = 0;
+  double mahalanobis_square = 0;
   Reason reason = Reason::none;
-  [[nodiscard]] double misfit() const { return fit.chi_square + surprise; }
+  [[nodiscard]] double cost() const { return fit.chi_square + mahalanobis_square; }
 };
 
 RigidFit rigid_start(MarkerSpan markers) {
@@ -43,9 +43,9 @@ RigidFit rigid_start(MarkerSpan markers) {
 }
 
 Minimum fit_from(const Pose& start, MarkerSpan markers, const Vector3& mean, const Task& task,
-                 int steps_max, double hopeless, RefineWork& work) {
+                 int steps_max, double chi_square_stop, RefineWork& work) {
   Minimum found;
-  found.fit = fit_weighted(markers, mean, start, task.prior, steps_max, hopeless);
+  found.fit = fit_weighted(markers, mean, start, task.prior, steps_max, chi_square_stop);
   ++work.fits;
   work.steps += found.fit.steps;
   work.marker_steps += found.fit.steps * static_cast<int>(markers.size());
@@ -60,14 +60,15 @@ Minimum fit_from(const Pose& start, MarkerSpan markers, const Vector3& mean, con
   if (!factor || !std::isfinite(found.covariance.sum())) {
     found.reason = Reason::degenerate;
   } else if (task.expected != nullptr) {
-    found.surprise = surprise_of(*task.expected, pose, found.covariance, task.reference_m);
+    found.mahalanobis_square =
+        mahalanobis_square(*task.expected, pose, found.covariance, task.reference_m);
   }
   return found;
 }
 
 bool is_better(const Minimum& a, const Minimum& b) {
   if (a.reason != Reason::none || b.reason != Reason::none) return a.reason == Reason::none;
-  return a.misfit() < b.misfit();
+  return a.cost() < b.cost();
 }
 
 OtherMinimum other_than(const WeightedFit& best, const Minimum& second) {
@@ -76,27 +77,28 @@ OtherMinimum other_than(const WeightedFit& best, const Minimum& second) {
   const Vector3 apart = rotation_vector(pose.rotation * best.T_camera_tool.rotation.conjugate());
   const Matrix3 turning =
       best.information.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>();
-  other.exists = apart.dot(turning * apart) > k_minima_apart_least;
+  other.exists = apart.dot(turning * apart) > k_minima_apart_min;
   if (!other.exists) return other;
   other.T_camera_tool = pose;
   other.covariance = second.covariance;
   other.delta_chi_square = second.fit.chi_square - best.chi_square;
-  other.surprise = second.surprise;
+  other.mahalanobis_square = second.mahalanobis_square;
   return other;
 }
 
 // Dot product of the quaternions of a pose and its flip, tilted by 29 degrees to the view.
 constexpr double k_shallow_dot = 0.8776;
 
-bool is_explained(double chi_square, int degrees_of_freedom) {
+bool passes_chi_square_test(double chi_square, int degrees_of_freedom) {
   return chi_square <= chi_square_limit(degrees_of_freedom);
 }
 
 // Chi-square above which a fit from the flip cannot become a second minimum beside `first`.
-double hopeless_beside(const Minimum& first, MarkerSpan markers, int degrees_of_freedom) {
-  const bool told = markers.size() >= 4 && first.reason == Reason::none &&
-                    is_explained(first.fit.chi_square, degrees_of_freedom);
-  return told ? first.fit.chi_square + k_flip_hopeless : std::numeric_limits<double>::infinity();
+double flip_limit(const Minimum& first, MarkerSpan markers, int degrees_of_freedom) {
+  const bool is_decided = markers.size() >= 4 && first.reason == Reason::none &&
+                          passes_chi_square_test(first.fit.chi_square, degrees_of_freedom);
+  return is_decided ? first.fit.chi_square + k_flip_excess_max
+                    : std::numeric_limits<double>::infinity();
 }
 
 // Fits all of `markers` from both initial guesses.
@@ -113,25 +115,26 @@ RefinedPose refine_all(MarkerSpan markers, const Task& task, int steps_max) {
   Minimum best = fit_from(first, markers, mean, task, steps_max, k_never, out.work);
   if (two) {
     const Pose flip = depth_flipped(first, flattest_direction(markers, mean), mean);
-    const double hopeless = hopeless_beside(best, markers, out.degrees_of_freedom);
-    Minimum second = fit_from(flip, markers, mean, task, steps_max, hopeless, out.work);
+    const double chi_square_stop = flip_limit(best, markers, out.degrees_of_freedom);
+    Minimum second = fit_from(flip, markers, mean, task, steps_max, chi_square_stop, out.work);
     if (is_better(second, best)) std::swap(best, second);
     if (second.reason == Reason::none) {
       out.other = other_than(best.fit, second);
       out.shallow = std::abs(first.rotation.dot(flip.rotation)) > k_shallow_dot &&
-                    second.fit.chi_square - best.fit.chi_square < k_odds_least;
+                    second.fit.chi_square - best.fit.chi_square < k_odds_min;
     }
   }
   out.reason = best.reason;
   out.T_camera_tool = best.fit.T_camera_tool;
   out.covariance = best.covariance;
   out.chi_square = best.fit.chi_square;
-  out.surprise = best.surprise;
+  out.mahalanobis_square = best.mahalanobis_square;
   return out;
 }
 
-bool is_explained(const RefinedPose& pose) {
-  return pose.reason == Reason::none && is_explained(pose.chi_square, pose.degrees_of_freedom);
+bool passes_chi_square_test(const RefinedPose& pose) {
+  return pose.reason == Reason::none &&
+         passes_chi_square_test(pose.chi_square, pose.degrees_of_freedom);
 }
 
 // The best fit with one marker removed that passes the chi-square test; `all` if there is none.
@@ -139,18 +142,19 @@ RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose&
   RefinedPose best = all;
   RefineWork work = all.work;
   std::array<WeightedMarker, k_markers_per_tool_max> others;
-  for (std::size_t left_out = 0; left_out < markers.size(); ++left_out) {
+  for (std::size_t rejected = 0; rejected < markers.size(); ++rejected) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < markers.size(); ++i) {
-      if (i != left_out) others[n++] = markers[i];
+      if (i != rejected) others[n++] = markers[i];
     }
-    RefinedPose pose = refine_all({others.data(), n}, task, task.settings.left_out_steps_max);
+    RefinedPose pose = refine_all({others.data(), n}, task, task.settings.rejection_steps_max);
     work += pose.work;
-    if (!is_explained(pose)) continue;
-    if (best.left_out >= 0 && !(pose.chi_square + pose.surprise < best.chi_square + best.surprise))
+    if (!passes_chi_square_test(pose)) continue;
+    if (best.rejected >= 0 &&
+        !(pose.chi_square + pose.mahalanobis_square < best.chi_square + best.mahalanobis_square))
       continue;
     best = pose;
-    best.left_out = static_cast<int>(left_out);
+    best.rejected = static_cast<int>(rejected);
   }
   best.work = work;
   return best;
@@ -159,7 +163,7 @@ RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose&
 }  // namespace
 
 RefinedPose refine_pose(MarkerSpan markers, const Vector3& reference_m, const PosePrior* prior,
-                        const RefineSettings& settings, const ExpectedPose* expected) noexcept {
+                        const RefineSettings& settings, const PredictedPose* expected) noexcept {
   const std::size_t least = prior != nullptr ? 1 : 3;
   if (markers.size() < least || markers.size() > k_markers_per_tool_max) {
     RefinedPose none;
@@ -168,10 +172,10 @@ RefinedPose refine_pose(MarkerSpan markers, const Vector3& reference_m, const Po
   }
   const Task task{reference_m, prior, settings, expected};
   RefinedPose pose = refine_all(markers, task, settings.steps_max);
-  if (is_explained(pose)) return pose;
+  if (passes_chi_square_test(pose)) return pose;
   if (pose.reason == Reason::none) pose.reason = Reason::bad_fit;
   const int count = static_cast<int>(markers.size());
-  if (settings.left_out_max < 1 || count <= settings.markers_left_least) return pose;
+  if (settings.rejected_max < 1 || count <= settings.markers_kept_min) return pose;
   return without_one(markers, task, pose);
 }
 

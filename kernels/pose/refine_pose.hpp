@@ -35,22 +35,22 @@ namespace glint {
 
 struct RefineSettings {
   int steps_max = k_refine_steps_max;  // of each fit of all markers
-  int left_out_max = 1;                // 0: no marker is removed, an outlier corrupts the pose
+  int rejected_max = 1;                // 0: no marker is removed, an outlier corrupts the pose
   // Of each fit with one marker removed: there may be many, and a fit that will pass is nearly
   // converged by then.
-  int left_out_steps_max = k_refine_steps_max / 2;
+  int rejection_steps_max = k_refine_steps_max / 2;
   // Minimum number of markers after a removal. Three agree by chance too easily: set 3 only if all
   // are at their predicted positions.
-  int markers_left_least = 4;
+  int markers_kept_min = 4;
 };
 
 // Two minima closer to each other than this squared Mahalanobis distance are one.
-inline constexpr double k_minima_apart_least = 0.01;
-// Limit on chi-square of a fit from the flip after k_steps_granted steps, as excess over a first
-// fit that passes the test. It applies to four or more markers. Above it the flip leads to no
+inline constexpr double k_minima_apart_min = 0.01;
+// Limit on chi-square of a fit from the flip after k_steps_before_limit steps, as excess over a
+// first fit that passes the test. It applies to four or more markers. Above it the flip leads to no
 // second minimum: the fit would converge slowly to the first one, or to one that is as bad. With
 // three markers a late second minimum was observed.
-inline constexpr double k_flip_hopeless = 1000;
+inline constexpr double k_flip_excess_max = 1000;
 
 // Loop counts.
 struct RefineWork {
@@ -65,9 +65,8 @@ struct RefineWork {
   }
 };
 [[nodiscard]] constexpr RefineWork refine_work_max(int markers, const RefineSettings& settings) {
-  const int others =
-      settings.left_out_max > 0 && markers > settings.markers_left_least ? markers : 0;
-  const int all = 2 * settings.steps_max, each = 2 * settings.left_out_steps_max;
+  const int others = settings.rejected_max > 0 && markers > settings.markers_kept_min ? markers : 0;
+  const int all = 2 * settings.steps_max, each = 2 * settings.rejection_steps_max;
   return {2 * (1 + others), all + each * others, all * markers + each * others * (markers - 1)};
 }
 
@@ -77,20 +76,20 @@ struct OtherMinimum {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();  // as the best pose's
   double delta_chi_square = 0;           // excess over the best one's; 9: three sigma
-  double surprise = 0;
+  double mahalanobis_square = 0;
 };
 
 struct RefinedPose {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();  // of the reference; order as in fit_covariance.hpp
   double chi_square = 0;
-  double surprise = 0;         // squared Mahalanobis distance from the prediction, or 0
-  int degrees_of_freedom = 0;  // residuals, plus the prior's six, minus the pose's six
+  double mahalanobis_square = 0;  // squared Mahalanobis distance from the prediction, or 0
+  int degrees_of_freedom = 0;     // residuals, plus the prior's six, minus the pose's six
   OtherMinimum other;
   // A flat tool seen nearly face-on: its two minima merge, or are nearly equally likely. The
   // covariance of each is smaller than the markers' information justifies.
   bool shallow = false;
-  int left_out = -1;  // index of the removed marker, -1: none
+  int rejected = -1;  // index of the removed marker, -1: none
   RefineWork work;
   Reason reason = Reason::none;
 };
@@ -99,10 +98,10 @@ struct RefinedPose {
 // may be null; with one a single marker is enough, without one three that are not on a line.
 // `expected` may be null, too; it only selects the minimum. Reason: too_few_markers (or more than
 // k_markers_per_tool_max), degenerate, collinear, out_of_range; or bad_fit if the fit fails the
-// chi-square test. Then the pose is set, with left_out -1, but must not be used as a measurement.
+// chi-square test. Then the pose is set, with rejected -1, but must not be used as a measurement.
 [[nodiscard]] RefinedPose refine_pose(
     std::span<const WeightedMarker> markers, const Vector3& reference_m,
     const PosePrior* prior = nullptr, const RefineSettings& settings = {},
-    const ExpectedPose* expected = nullptr) noexcept GLINT_NONBLOCKING;
+    const PredictedPose* expected = nullptr) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -16,7 +16,7 @@ Vector3 mean_of(std::span<const Vector3> points) {
 // Tests the ratio of the second largest to the largest eigenvalue by invariants, without a
 // decomposition. With e1 the trace and e2 the sum of the principal minors, e2/e1^2 is between 1 and
 // 2 times that ratio if it is small.
-Reason judge_spread(const Matrix3& covariance) {
+Reason test_spread(const Matrix3& covariance) {
   const double e1 = covariance(0, 0) + covariance(1, 1) + covariance(2, 2);
   if (!std::isfinite(e1)) return Reason::out_of_range;
   if (e1 <= k_coincident_variance_m2) return Reason::degenerate;
@@ -47,7 +47,7 @@ Reason rotation_is_fixed_by(std::span<const Vector3> points_m) noexcept {
     const Vector3 offset = point - mean;
     covariance += offset * offset.transpose();
   }
-  return judge_spread(covariance / static_cast<double>(points_m.size()));
+  return test_spread(covariance / static_cast<double>(points_m.size()));
 }
 
 RigidFit fit_rigid(std::span<const Vector3> model_m, std::span<const Vector3> measured_m) noexcept {
@@ -69,7 +69,7 @@ RigidFit fit_rigid(std::span<const Vector3> model_m, std::span<const Vector3> me
   const double n = static_cast<double>(model_m.size());
   model_covariance /= n;
   cross_covariance /= n;
-  fit.reason = judge_spread(model_covariance);
+  fit.reason = test_spread(model_covariance);
   if (fit.reason != Reason::none) return fit;
   if (!std::isfinite(cross_covariance.sum())) {
     fit.reason = Reason::out_of_range;

@@ -22,34 +22,33 @@ double middle_of(const Sorted& sorted, int count) {
 
 // The deviation from the median that `others` other values do not exceed. The nearest values to the
 // median are contiguous: of all windows of that length, the one whose farther end is nearest.
-double nearest_stretch(const Sorted& sorted, int count, double median, int others) {
+double deviation_order_statistic(const Sorted& sorted, int count, double median, int others) {
   const double* const from = sorted.data();
-  TwoDoubles least = both(k_infinite);
+  TwoDoubles least = broadcast_two(k_infinite);
   for (int i = 0; i < count - others; i += 2) {
-    const TwoDoubles below = both(median) - load_two(from + i);
-    const TwoDoubles above = load_two(from + i + others) - both(median);
-    least = lesser(least, greater(below, above));
+    const TwoDoubles below = broadcast_two(median) - load_two(from + i);
+    const TwoDoubles above = load_two(from + i + others) - broadcast_two(median);
+    least = minimum(least, maximum(below, above));
   }
   return std::min(least[0], least[1]);
 }
 
 double median_deviation(const Sorted& sorted, int count, double median) {
-  const double here = nearest_stretch(sorted, count, median, count / 2);
+  const double here = deviation_order_statistic(sorted, count, median, count / 2);
   if (count % 2 == 1) return here;
-  return 0.5 * (nearest_stretch(sorted, count, median, count / 2 - 1) + here);
+  return 0.5 * (deviation_order_statistic(sorted, count, median, count / 2 - 1) + here);
 }
 
 }  // namespace
 
-RobustMean robust_mean(const RangeValues& values, int count, double gate_least) noexcept {
+RobustMean robust_mean(const RangeValues& values, int count, double gate_min) noexcept {
   Sorted sorted;
   sorted.fill(k_infinite);
   std::copy_n(values.begin(), count, sorted.begin());
   sort_pairs(sorted.data(), count);
   RobustMean out;
   out.median = middle_of(sorted, count);
-  out.gate =
-      std::max(k_inlier_deviations * median_deviation(sorted, count, out.median), gate_least);
+  out.gate = std::max(k_inlier_deviations * median_deviation(sorted, count, out.median), gate_min);
   NearSum near, near_too;  // two independent sums run in parallel
   for (int i = 0; i < count; i += 4) {
     const TwoDoubles two = load_two(sorted.data() + i), next = load_two(sorted.data() + i + 2);

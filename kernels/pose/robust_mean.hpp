@@ -33,9 +33,10 @@ struct NearSum {
   TwoMasks minus_count{};  // a set lane is -1
 
   void add(const RobustMean& found, const TwoDoubles& tested, const TwoDoubles& value) {
-    const TwoDoubles beyond = tested - both(found.median);
-    const TwoMasks near = (beyond <= both(found.gate)) & (-beyond <= both(found.gate));
-    sum += where(near, value);
+    const TwoDoubles beyond = tested - broadcast_two(found.median);
+    const TwoMasks near =
+        (beyond <= broadcast_two(found.gate)) & (-beyond <= broadcast_two(found.gate));
+    sum += keep_lanes(near, value);
     minus_count += near;
   }
   void add(const NearSum& other) {
@@ -48,8 +49,8 @@ struct NearSum {
   }
 };
 
-// Uses the first `count` values, 1..k_range_values_max. The gate is at least gate_least.
+// Uses the first `count` values, 1..k_range_values_max. The gate is at least gate_min.
 [[nodiscard]] RobustMean robust_mean(const RangeValues& values, int count,
-                                     double gate_least) noexcept GLINT_NONBLOCKING;
+                                     double gate_min) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

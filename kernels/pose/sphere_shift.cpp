@@ -50,8 +50,8 @@ double farthest_corner_square(const CameraModel& camera) {
 
 }  // namespace
 
-SphereShift sphere_shift(const CameraModel& camera) noexcept {
-  SphereShift out;
+SphereOffset sphere_offset(const CameraModel& camera) noexcept {
+  SphereOffset out;
   out.axis_px = {camera.cx, camera.cy};
   const double most = farthest_corner_square(camera);
   if (!(most > 0)) return out;
@@ -74,7 +74,7 @@ SphereShift sphere_shift(const CameraModel& camera) noexcept {
   return out;
 }
 
-Vector2 shift_px(const SphereShift& shift, const Vector2& centroid_px, double sine) noexcept {
+Vector2 offset_px(const SphereOffset& shift, const Vector2& centroid_px, double sine) noexcept {
   const Vector2 beside = centroid_px - shift.axis_px;
   const double place = std::clamp(beside.squaredNorm() * shift.entries_per_square_px, 0.0,
                                   static_cast<double>(k_sphere_shift_entries - 1));

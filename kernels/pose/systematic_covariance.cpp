@@ -21,18 +21,18 @@ void add_square(const Vector6& column, Matrix6& sum) {
   sum += column.lazyProduct(column.transpose());
 }
 
-void add_marker(const MarkerSlopes& slopes, double range_m, const CameraUncertainty& camera,
+void add_marker(const MarkerSensitivity& slopes, double range_m, const CameraUncertainty& camera,
                 double marker_sigma_m, Spread& spread) {
-  spread.common.col(0) += slopes.farther * camera.range_offset_m;
-  spread.common.col(1) += slopes.farther * (camera.range_scale * range_m);
-  spread.common.col(2) += slopes.right * camera.principal_point_px;
-  spread.common.col(3) += slopes.down * camera.principal_point_px;
-  spread.common.col(4) += slopes.outward * camera.focal_scale;
-  add_square(slopes.farther * camera.slow_range_m, spread.correlated);
-  add_square(slopes.right * camera.slow_centroid_px, spread.correlated);
-  add_square(slopes.down * camera.slow_centroid_px, spread.correlated);
+  spread.common.col(0) += slopes.by_range * camera.range_offset_m;
+  spread.common.col(1) += slopes.by_range * (camera.range_scale * range_m);
+  spread.common.col(2) += slopes.by_pixel_x * camera.principal_point_px;
+  spread.common.col(3) += slopes.by_pixel_y * camera.principal_point_px;
+  spread.common.col(4) += slopes.by_focal * camera.focal_scale;
+  add_square(slopes.by_range * camera.correlated_range_m, spread.correlated);
+  add_square(slopes.by_pixel_x * camera.correlated_centroid_px, spread.correlated);
+  add_square(slopes.by_pixel_y * camera.correlated_centroid_px, spread.correlated);
   for (int axis = 0; axis < 3; ++axis)
-    add_square(slopes.moved.col(axis) * marker_sigma_m, spread.geometry);
+    add_square(slopes.by_position.col(axis) * marker_sigma_m, spread.geometry);
 }
 
 // Covariance of the reference: N^-1 S N^-1, moved by `lever`.
@@ -61,8 +61,8 @@ Result<SystematicCovariance> systematic_covariance(std::span<const WeightedMarke
   for (std::size_t i = 0; i < markers.size(); ++i) {
     const WeightedMarker& marker = markers[i];
     const Vector3 lever = T_camera_tool.rotation * (marker.model_m - mean_m);
-    const MarkerSlopes slopes =
-        marker_slopes(marker, rays[i], T_camera_tool * marker.model_m, lever);
+    const MarkerSensitivity slopes =
+        marker_sensitivity(marker, rays[i], T_camera_tool * marker.model_m, lever);
     add_marker(slopes, marker.range_m, camera, marker_sigma_m, spread);
   }
   const Matrix6 inverse = factor.value.inverse();

@@ -34,11 +34,11 @@ struct CameraUncertainty {
   double focal_scale = 0.003;
   // Of each marker, correlated in time. From two static tools in front of a HoloLens 2, 120 s, as
   // of four markers.
-  double slow_range_m = 0.0007;
-  double slow_centroid_px = 0.05;  // per axis
-  double fast_share = 0.6;         // of these two variances: the part correlated for
-                                   // CorrelationTimes::fast_s
-  double stamp_s = 0.002;          // of mid-exposure's time stamp: counts if the tool moves
+  double correlated_range_m = 0.0007;
+  double correlated_centroid_px = 0.05;  // per axis
+  double fast_share = 0.6;               // of these two variances: the part correlated for
+                                         // CorrelationTimes::fast_s
+  double time_stamp_s = 0.002;           // of mid-exposure's time stamp: counts if the tool moves
 };
 inline constexpr CameraUncertainty k_exact_camera{0, 0, 0, 0, 0, 0, 0, 0};
 

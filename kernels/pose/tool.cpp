@@ -35,7 +35,7 @@ std::uint32_t identity_of(const Tool& tool) {
   hash.add(tool.tip_m);
   if (const DepthBias& bias = tool.depth_bias; bias.is_measured()) {
     for (const double part :
-         {bias.offset_m, bias.per_metre, bias.dim_m, bias.range_min_m, bias.range_max_m})
+         {bias.offset_m, bias.per_metre, bias.low_signal_m, bias.range_min_m, bias.range_max_m})
       hash.add(part);
   }
   return hash.value();

@@ -6,13 +6,13 @@
 namespace glint {
 namespace {
 
-constexpr double k_decrease_least = 1e-4;  // minimum decrease of chi-square
+constexpr double k_decrease_min = 1e-4;  // minimum decrease of chi-square
 // A step of a tenth of a sigma: the information before such a step is valid after it.
 constexpr double k_decrease_short = 1e-2;
 // Damping factor: its initial value after an undone step, and its growth and decay.
 constexpr double k_damping_first = 0.01;
 constexpr double k_damping_growth = 10;
-constexpr double k_damping_least = 1e-4;  // below it 0: Gauss-Newton converges faster
+constexpr double k_damping_min = 1e-4;  // below it 0: Gauss-Newton converges faster
 
 bool evaluate(std::span<const WeightedMarker> markers, const Vector3& mean_m, const Pose& pose,
               const PosePrior* prior, NormalEquations& normal) {
@@ -44,7 +44,7 @@ double next_decrease(double decrease, double decrease_before) {
 
 WeightedFit fit_weighted(std::span<const WeightedMarker> markers, const Vector3& mean_m,
                          const Pose& start, const PosePrior* prior, int steps_max,
-                         double hopeless) noexcept {
+                         double chi_square_stop) noexcept {
   WeightedFit fit;
   fit.T_camera_tool = start;
   NormalEquations here;
@@ -62,16 +62,16 @@ WeightedFit fit_weighted(std::span<const WeightedMarker> markers, const Vector3&
       fit.reason = Reason::degenerate;
       return fit;
     }
-    const Vector6 step = -factor.value.solve(here.slope);
+    const Vector6 step = -factor.value.solve(here.gradient);
     const Pose there = stepped(fit.T_camera_tool, mean_m, step);
-    const double decrease = -step.dot(here.slope);
-    if (next_decrease(decrease, decrease_before) < k_decrease_least) {
+    const double decrease = -step.dot(here.gradient);
+    if (next_decrease(decrease, decrease_before) < k_decrease_min) {
       fit.T_camera_tool = there;
       here.chi_square = std::max(0.0, here.chi_square - decrease);
       break;
     }
     if (fit.steps >= steps_max) break;
-    if (fit.steps == k_steps_granted && here.chi_square > hopeless) {
+    if (fit.steps == k_steps_before_limit && here.chi_square > chi_square_stop) {
       fit.reason = Reason::bad_fit;
       return fit;
     }
@@ -81,7 +81,7 @@ WeightedFit fit_weighted(std::span<const WeightedMarker> markers, const Vector3&
       fit.T_camera_tool = there;
       here = next;
       decrease_before = damping > 0 ? 0 : decrease;
-      damping = damping > k_damping_least ? damping / k_damping_growth : 0;
+      damping = damping > k_damping_min ? damping / k_damping_growth : 0;
     } else {
       damping = std::max(k_damping_first, damping * k_damping_growth);
     }

@@ -26,23 +26,24 @@ namespace glint {
 
 // Usually two or three, from the rigid fit of points with 5 mm of noise along their rays.
 inline constexpr int k_refine_steps_max = 12;
-// Number of steps after which the `hopeless` limit is tested.
-inline constexpr int k_steps_granted = 3;
+// Number of steps after which the `chi_square_stop` limit is tested.
+inline constexpr int k_steps_before_limit = 3;
 
 struct WeightedFit {
   Pose T_camera_tool;
   double chi_square = 0;                  // including the prior's part
   Matrix6 information = Matrix6::Zero();  // about the markers' mean; lower triangle only
   int steps = 0;
-  // degenerate: the markers and the prior do not determine the pose. bad_fit: above `hopeless`.
+  // degenerate: the markers and the prior do not determine the pose. bad_fit: above
+  // `chi_square_stop`.
   Reason reason = Reason::none;
 };
 
 // mean_m: of the markers, tool frame. The prior may be null. Ends with bad_fit if chi-square is
-// still above `hopeless` after k_steps_granted steps.
+// still above `chi_square_stop` after k_steps_before_limit steps.
 [[nodiscard]] WeightedFit fit_weighted(
     std::span<const WeightedMarker> markers, const Vector3& mean_m, const Pose& start,
     const PosePrior* prior, int steps_max,
-    double hopeless = std::numeric_limits<double>::infinity()) noexcept GLINT_NONBLOCKING;
+    double chi_square_stop = std::numeric_limits<double>::infinity()) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

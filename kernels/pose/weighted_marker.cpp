@@ -4,8 +4,8 @@
 
 namespace glint {
 
-Result<WeightedMarker> weigh_marker(const Vector3& model_m, const LocalRays& rays, double range_m,
-                                    const MarkerVariance& variance) noexcept {
+Result<WeightedMarker> whiten_marker(const Vector3& model_m, const LocalRays& rays, double range_m,
+                                     const MarkerVariance& variance) noexcept {
   const Result<WeightedMarker> none{{}, Reason::out_of_range};
   // Dual basis of (along_x, along_y) in their plane: it yields du and dv.
   const double xx = rays.along_x.squaredNorm(), yy = rays.along_y.squaredNorm();

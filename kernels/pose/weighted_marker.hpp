@@ -48,7 +48,7 @@ struct WeightedMarker {
 // range_m: to its centre, a sphere's radius behind the surface. Returns Reason::out_of_range if a
 // range or a variance is not positive, the ray does not change with the pixel, or a value is not
 // finite.
-[[nodiscard]] Result<WeightedMarker> weigh_marker(
+[[nodiscard]] Result<WeightedMarker> whiten_marker(
     const Vector3& model_m, const LocalRays& rays, double range_m,
     const MarkerVariance& variance) noexcept GLINT_NONBLOCKING;
 

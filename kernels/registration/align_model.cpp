@@ -6,12 +6,12 @@
 namespace glint {
 namespace {
 
-Matrix6 covariance_of(const AlignmentSums& sums, const Vector3& middle,
+Matrix6 covariance_of(const AlignmentSums& sums, const Vector3& centroid,
                       const Pose& T_world_base) noexcept {
   const Result<PoseFactor> factor = pose_factor(sums.matrix);
   if (!factor || sums.count <= 6) return Matrix6::Zero();
   // Motion of the base's origin: shift + turn x (origin - middle).
-  const Vector3 l = T_world_base.translation - middle;
+  const Vector3 l = T_world_base.translation - centroid;
   Matrix6 to_origin = Matrix6::Identity();
   to_origin.topRightCorner<3, 3>() << 0, l.z(), -l.y(), -l.z(), 0, l.x(), l.y(), -l.x(), 0;
   const Matrix6 about_middle = factor.value.inverse() * (sums.squares / (sums.count - 6));
@@ -44,11 +44,11 @@ void AlignmentRun::start(const Pose& T_world_base, const AlignmentSettings& sett
 }
 
 bool AlignmentRun::step(std::span<const SceneView> views, AlignmentScratch& scratch) noexcept {
-  bool more = true, whole = false;
-  for (StepBudget all; more && !whole; all = StepBudget()) {
+  bool more = true, slice_complete = false;
+  for (StepBudget all; more && !slice_complete; all = StepBudget()) {
     more = step(views, all, scratch);
-    whole = phase_ == Phase::grid || phase_ == Phase::start_view ||
-            (phase_ == Phase::pair && view_ == 0 && at_ == 0);
+    slice_complete = phase_ == Phase::grid || phase_ == Phase::start_view ||
+                     (phase_ == Phase::pair && view_ == 0 && at_ == 0);
   }
   return more;
 }
@@ -65,7 +65,7 @@ bool AlignmentRun::step(std::span<const SceneView> views, StepBudget& budget,
   }
   if (phase_ == Phase::grid) {
     // Subsamples the scene by at most 2, so that pairs are apart mainly along the normal.
-    search_scene(views[view_], gate_.step > 2 ? 2 : 1, gate_.gate_m, scratch.views[view_]);
+    index_scene(views[view_], gate_.step > 2 ? 2 : 1, gate_.gate_m, scratch.views[view_]);
     if (++view_ < views.size()) return true;
     view_ = 0;
     phase_ = Phase::start_view;
@@ -74,9 +74,9 @@ bool AlignmentRun::step(std::span<const SceneView> views, StepBudget& budget,
   if (phase_ == Phase::start_view) start_view(views, scratch);
   if (phase_ == Phase::render) {
     if (!rendering_.step(budget, scratch.views[view_])) return true;
-    phase_ = Phase::middle;
-  } else if (phase_ == Phase::middle) {
-    find_middle(views, budget, scratch);
+    phase_ = Phase::centroid;
+  } else if (phase_ == Phase::centroid) {
+    find_centroid(views, budget, scratch);
   } else if (phase_ == Phase::pair) {
     pair(views, budget, scratch);
   }
@@ -87,30 +87,32 @@ void AlignmentRun::start_view(std::span<const SceneView> views,
                               AlignmentScratch& scratch) noexcept {
   if (view_ == 0) {
     T_world_rendered_ = result_.T_world_base;
-    of_all_ = Vector3::Zero();
-    seen_ = 0;
+    total_sum_ = Vector3::Zero();
+    visible_count_ = 0;
   }
   rendering_.start(views[view_], T_world_rendered_, gate_.step, scratch.views[view_]);
-  of_view_ = Vector3::Zero();
+  view_sum_ = Vector3::Zero();
   at_ = 0;
   phase_ = Phase::render;
 }
 
 // Centroid of the visible points in the world frame: rotations about it move the points least.
-void AlignmentRun::find_middle(std::span<const SceneView> views, StepBudget& budget,
-                               const AlignmentScratch& scratch) noexcept {
+void AlignmentRun::find_centroid(std::span<const SceneView> views, StepBudget& budget,
+                                 const AlignmentScratch& scratch) noexcept {
   const AlignmentScratch::View& memory = scratch.views[view_];
-  for (const int end = budget.end_of(at_, memory.seen_count, k_middle_steps); at_ < end; ++at_) {
-    of_view_ += memory.seen[static_cast<std::size_t>(at_)].point.cast<double>();
+  for (const int end = budget.take_items(at_, memory.visible_count, k_centroid_steps); at_ < end;
+       ++at_) {
+    view_sum_ += memory.seen[static_cast<std::size_t>(at_)].point.cast<double>();
   }
-  if (at_ < memory.seen_count) return;
+  if (at_ < memory.visible_count) return;
   const Pose T_world_camera = views[view_].T_camera_world.inverse();
-  of_all_ += T_world_camera.rotation * of_view_ + memory.seen_count * T_world_camera.translation;
-  seen_ += memory.seen_count;
+  total_sum_ +=
+      T_world_camera.rotation * view_sum_ + memory.visible_count * T_world_camera.translation;
+  visible_count_ += memory.visible_count;
   phase_ = Phase::start_view;
   if (++view_ < views.size()) return;
   view_ = 0;
-  middle_ = seen_ > 0 ? Vector3(of_all_ / seen_) : of_all_;
+  centroid_ = visible_count_ > 0 ? Vector3(total_sum_ / visible_count_) : total_sum_;
   begin_pairs();
 }
 
@@ -127,14 +129,14 @@ void AlignmentRun::pair(std::span<const SceneView> views, StepBudget& budget,
   const AlignmentScratch::View& memory = scratch.views[view_];
   const Pose& T_camera_world = views[view_].T_camera_world;
   const Pose T_world_camera = T_camera_world.inverse();
-  const int end = budget.end_of(at_, memory.seen_count, k_pair_steps);
+  const int end = budget.take_items(at_, memory.visible_count, k_pair_steps);
   add_pairs(std::span(memory.seen)
                 .subspan(static_cast<std::size_t>(at_), static_cast<std::size_t>(end - at_)),
             T_camera_world * T_world_since * T_world_camera, gate_.matching, gate_.gate_m,
             views[view_], {&memory.grid, memory.scene}, T_world_camera.rotation,
-            T_camera_world * middle_, sums_);
+            T_camera_world * centroid_, sums_);
   at_ = end;
-  if (at_ < memory.seen_count) return;
+  if (at_ < memory.visible_count) return;
   at_ = 0;
   if (++view_ < views.size()) return;
   view_ = 0;
@@ -163,11 +165,12 @@ void AlignmentRun::move() noexcept {
     phase_ = Phase::done;
     return;
   }
-  result_.T_world_base = moved(result_.T_world_base, step.value, middle_);
+  result_.T_world_base = moved(result_.T_world_base, step.value, centroid_);
   const double wide = gate_.matching == Matching::projective ? 0 : gate_.gate_m / 50;
-  const bool rests = step.value.shift.norm() < std::max(wide, settings_.rest_shift_m) &&
-                     step.value.turn.norm() < std::max(wide, settings_.rest_turn_rad);
-  if (rests || ++step_ == gate_.steps_max) {
+  const bool converged =
+      step.value.translation.norm() < std::max(wide, settings_.convergence_translation_m) &&
+      step.value.rotation.norm() < std::max(wide, settings_.convergence_rotation_rad);
+  if (converged || ++step_ == gate_.steps_max) {
     end_gate(sums_);
   } else if (gate_.render_each) {
     phase_ = Phase::start_view;
@@ -178,7 +181,7 @@ void AlignmentRun::move() noexcept {
 
 void AlignmentRun::end_gate(const AlignmentSums& sums) noexcept {
   if (number_ + 1 == gates_of(settings_)) {
-    result_.covariance = covariance_of(sums, middle_, result_.T_world_base);
+    result_.covariance = covariance_of(sums, centroid_, result_.T_world_base);
     result_.pairs = sums.count;
     result_.residual_m = sums.count > 0 ? std::sqrt(sums.squares / sums.count) : 0;
   }

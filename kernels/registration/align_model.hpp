@@ -26,7 +26,7 @@ inline constexpr int k_gates_max = 8;
 inline constexpr int k_alignment_steps_max = 60;
 // Steps per pair of points; per Gauss-Newton step without its pairs.
 inline constexpr int k_pair_steps = 80, k_solve_steps = 4000;
-inline constexpr int k_middle_steps = 4;  // per point of the centroid
+inline constexpr int k_centroid_steps = 4;  // per point of the centroid
 
 struct Gate {
   double gate_m = 0;
@@ -45,8 +45,8 @@ struct AlignmentSettings {
        {0.035, Matching::projective, 1, 12, true}}};  // 3 sigma of 1 % at 1.2 m
   int gate_count = 5;
   // Convergence limits of a step, both required. Point and plane gates use at least gate_m / 50.
-  double rest_shift_m = 1e-4;
-  double rest_turn_rad = 1e-4;
+  double convergence_translation_m = 1e-4;
+  double convergence_rotation_rad = 1e-4;
 };
 
 struct ModelAlignment {
@@ -78,15 +78,15 @@ class AlignmentRun {
   [[nodiscard]] const ModelAlignment& result() const noexcept { return result_; }
   // Centroid of the points visible at the last rendering, in the world frame; rotations are about
   // it.
-  [[nodiscard]] const Vector3& middle() const noexcept { return middle_; }
+  [[nodiscard]] const Vector3& centroid() const noexcept { return centroid_; }
 
  private:
-  enum class Phase : std::uint8_t { begin, grid, start_view, render, middle, pair, done };
+  enum class Phase : std::uint8_t { begin, grid, start_view, render, centroid, pair, done };
 
   void begin_gate() noexcept;
   void start_view(std::span<const SceneView> views, AlignmentScratch& scratch) noexcept;
-  void find_middle(std::span<const SceneView> views, StepBudget& budget,
-                   const AlignmentScratch& scratch) noexcept;
+  void find_centroid(std::span<const SceneView> views, StepBudget& budget,
+                     const AlignmentScratch& scratch) noexcept;
   void pair(std::span<const SceneView> views, StepBudget& budget,
             const AlignmentScratch& scratch) noexcept;
   void begin_pairs() noexcept;
@@ -96,15 +96,15 @@ class AlignmentRun {
   AlignmentSettings settings_;
   ModelAlignment result_;
   Pose T_world_rendered_;
-  Vector3 middle_ = Vector3::Zero();
+  Vector3 centroid_ = Vector3::Zero();
   Gate gate_;
   Phase phase_ = Phase::done;
   int number_ = 0, step_ = 0;  // of the gate, and within it
   std::size_t view_ = 0;
   int at_ = 0;  // index of the view's points
   ModelRendering rendering_;
-  Vector3 of_view_ = Vector3::Zero(), of_all_ = Vector3::Zero();  // sums of the visible points
-  int seen_ = 0;
+  Vector3 view_sum_ = Vector3::Zero(), total_sum_ = Vector3::Zero();  // sums of the visible points
+  int visible_count_ = 0;
   AlignmentSums sums_;
 };
 

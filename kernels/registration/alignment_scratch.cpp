@@ -63,19 +63,19 @@ void ModelRendering::start(const SceneView& view, const Pose& T_world_base, int 
   if (of_points_) {
     (void)splat_.start(view.cloud, T_camera_base, view.camera, step, buffer, memory.seen);
   } else {
-    memory.seen_count = seen_points(view, T_camera_base, step, buffer, memory.seen);
+    memory.visible_count = visible_points(view, T_camera_base, step, buffer, memory.seen);
   }
 }
 
 bool ModelRendering::step(StepBudget& budget, AlignmentScratch::View& memory) noexcept {
   if (!of_points_) return true;
   if (!splat_.step(budget)) return false;
-  memory.seen_count = splat_.count();
+  memory.visible_count = splat_.count();
   return true;
 }
 
-void search_scene(const SceneView& view, int step, double reach_m,
-                  AlignmentScratch::View& memory) noexcept {
+void index_scene(const SceneView& view, int step, double reach_m,
+                 AlignmentScratch::View& memory) noexcept {
   std::size_t count = 0;
   for (int y = 0; y < view.camera.height; y += step) {
     for (int x = 0; x < view.camera.width; x += step) {
@@ -98,7 +98,7 @@ bool SceneIndexing::step(const SceneView& view, double reach_m, StepBudget& budg
                          AlignmentScratch::View& memory) noexcept {
   if (building_) return memory.grid.build_step(budget);
   const auto pixels = static_cast<int>(pixels_of(view));
-  for (const int end = budget.end_of(at_, pixels, k_scene_pixel_steps); at_ < end; ++at_) {
+  for (const int end = budget.take_items(at_, pixels, k_scene_pixel_steps); at_ < end; ++at_) {
     const auto pixel = static_cast<std::size_t>(at_);
     const float z = view.depth_m[pixel];
     if (!(z > 0) || !view.may_be_model(pixel)) continue;

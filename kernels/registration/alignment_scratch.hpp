@@ -23,11 +23,11 @@ class AlignmentScratch {
     std::vector<float> z;
     std::vector<std::int32_t> triangle;
     std::vector<ProjectedCorner> corners;
-    std::vector<SeenPoint> seen;
+    std::vector<VisiblePoint> seen;
     std::vector<Vector3f> scene;
     std::vector<Vector6> patches;  // of patch_covariance.hpp: at most 1/16 of the pixels
     PointGrid grid;                // of the scene
-    int seen_count = 0;
+    int visible_count = 0;
   };
   std::vector<View> views;
 };
@@ -55,8 +55,8 @@ class ModelRendering {
 
 // Builds the search grid of the scene's points, every step-th pixel in both directions, for
 // searches within reach_m.
-void search_scene(const SceneView& view, int step, double reach_m,
-                  AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
+void index_scene(const SceneView& view, int step, double reach_m,
+                 AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
 
 // The same for all pixels, in slices.
 inline constexpr int k_scene_pixel_steps = 16;

@@ -11,15 +11,16 @@ Result<AlignmentStep> solve(const AlignmentSums& sums) noexcept {
   return {{x.head<3>(), x.tail<3>()}, Reason::none};
 }
 
-Pose moved(const Pose& T, const AlignmentStep& step, const Vector3& middle) noexcept {
-  const double angle = step.turn.norm();
-  Quaternion turn = Quaternion::Identity();
+Pose moved(const Pose& T, const AlignmentStep& step, const Vector3& centroid) noexcept {
+  const double angle = step.rotation.norm();
+  Quaternion rotation = Quaternion::Identity();
   if (angle > 0) {
     const SineCosine half = sine_cosine(0.5 * angle);
-    const Vector3 v = step.turn * (half.sine / angle);
-    turn = Quaternion(half.cosine, v.x(), v.y(), v.z());
+    const Vector3 v = step.rotation * (half.sine / angle);
+    rotation = Quaternion(half.cosine, v.x(), v.y(), v.z());
   }
-  return {(turn * T.rotation).normalized(), turn * (T.translation - middle) + middle + step.shift};
+  return {(rotation * T.rotation).normalized(),
+          rotation * (T.translation - centroid) + centroid + step.translation};
 }
 
 }  // namespace glint

@@ -25,22 +25,23 @@ struct AlignmentSums {
 };
 
 struct AlignmentStep {
-  Vector3 shift = Vector3::Zero();  // metres
-  Vector3 turn = Vector3::Zero();   // radians about the centroid
+  Vector3 translation = Vector3::Zero();  // metres
+  Vector3 rotation = Vector3::Zero();     // radians about the centroid
 };
 
 // Least-squares motion. Reason::degenerate: the residuals do not determine all six degrees of
 // freedom.
 [[nodiscard]] Result<AlignmentStep> solve(const AlignmentSums& sums) noexcept GLINT_NONBLOCKING;
 
-// Translates T and rotates it about the point `middle`.
+// Translates T and rotates it about the point `centroid`.
 [[nodiscard]] Pose moved(const Pose& T, const AlignmentStep& step,
-                         const Vector3& middle) noexcept GLINT_NONBLOCKING;
+                         const Vector3& centroid) noexcept GLINT_NONBLOCKING;
 
 inline void AlignmentSums::add(const Vector3& lever, const Vector3& gradient, double residual,
                                double weight) noexcept {
-  const Vector3 turn = lever.cross(gradient);
-  const double row[6] = {gradient.x(), gradient.y(), gradient.z(), turn.x(), turn.y(), turn.z()};
+  const Vector3 moment = lever.cross(gradient);
+  const double row[6] = {gradient.x(), gradient.y(), gradient.z(),
+                         moment.x(),   moment.y(),   moment.z()};
   for (int c = 0; c < 6; ++c) {
     const double weighted = weight * row[c];
     slope(c) += weighted * residual;

@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 // Rotation vector from b to a about fixed axes, radians.
-Vector3 turn_between(const Quaternion& a, const Quaternion& b) noexcept {
+Vector3 rotation_vector_between(const Quaternion& a, const Quaternion& b) noexcept {
   const Quaternion q = a * b.conjugate();
   const double sine = q.vec().norm();
   if (!(sine > 0)) return Vector3::Zero();
@@ -46,8 +46,8 @@ const char* name_of(FollowOutcome outcome) noexcept {
   }
 }
 
-Reason ReferenceFollower::prepare(int pixels, int corners) {
-  known_ = false;
+Reason RobotPoseTracker::prepare(int pixels, int corners) {
+  has_reference_ = false;
   phase_ = Phase::idle;
   for (const double value : {settings.time_constant_s, settings.jump_m, settings.jump_rad}) {
     if (!(value > 0) || !std::isfinite(value)) return Reason::out_of_range;
@@ -56,24 +56,24 @@ Reason ReferenceFollower::prepare(int pixels, int corners) {
   return scratch_.prepare(1, pixels, corners);
 }
 
-void ReferenceFollower::begin(const Pose& T_world_base, const Matrix6& covariance,
-                              Time time) noexcept {
+void RobotPoseTracker::begin(const Pose& T_world_base, const Matrix6& covariance,
+                             Time time) noexcept {
   reference_ = {T_world_base, covariance, time};
   newest_ = time;
   report_ = FollowReport{};
   report_.time = time;
   report_.outcome = FollowOutcome::followed;
   phase_ = Phase::idle;
-  known_ = true;
+  has_reference_ = true;
 }
 
-bool ReferenceFollower::look(const SceneView& view, Time time) noexcept {
+bool RobotPoseTracker::look(const SceneView& view, Time time) noexcept {
   const int jumps = report_.jumps;
   report_ = FollowReport{};
   report_.time = time;
   report_.jumps = jumps;
   phase_ = Phase::idle;
-  if (!known_) return false;
+  if (!has_reference_) return false;
   if (time <= newest_) {
     report_.outcome = FollowOutcome::late;
     return false;
@@ -85,11 +85,11 @@ bool ReferenceFollower::look(const SceneView& view, Time time) noexcept {
   return true;
 }
 
-int ReferenceFollower::slices_max() const noexcept {
+int RobotPoseTracker::slices_max() const noexcept {
   return AlignmentRun::slices_max(settings.alignment, 1) + 1;
 }
 
-bool ReferenceFollower::step() noexcept {
+bool RobotPoseTracker::step() noexcept {
   if (phase_ == Phase::idle) return false;
   const std::span<const SceneView> views(&view_, 1);
   if (phase_ == Phase::align) {
@@ -101,7 +101,7 @@ bool ReferenceFollower::step() noexcept {
   return false;
 }
 
-int ReferenceFollower::step(int most_steps) noexcept {
+int RobotPoseTracker::step(int most_steps) noexcept {
   StepBudget budget(std::max(most_steps, 1));
   const int before = budget.left();
   bool more = !idle();
@@ -110,7 +110,7 @@ int ReferenceFollower::step(int most_steps) noexcept {
 }
 
 // Requires an unspent budget, so that every call makes progress.
-bool ReferenceFollower::step(StepBudget& budget) noexcept {
+bool RobotPoseTracker::step(StepBudget& budget) noexcept {
   const std::span<const SceneView> views(&view_, 1);
   bool more = true;
   if (phase_ == Phase::align) {
@@ -126,13 +126,13 @@ bool ReferenceFollower::step(StepBudget& budget) noexcept {
   return more;
 }
 
-void ReferenceFollower::begin_judging() noexcept {
+void RobotPoseTracker::begin_judging() noexcept {
   judge_.start(run_.result().T_world_base, settings.judge);
   phase_ = Phase::judge;
 }
 
-FollowOutcome ReferenceFollower::outcome() const noexcept {
-  const Judgement& j = report_.judgement;
+FollowOutcome RobotPoseTracker::outcome() const noexcept {
+  const AlignmentScore& j = report_.judgement;
   if (report_.seen.reason != Reason::none || j.visible_share() < settings.visible_share_min) {
     return FollowOutcome::hidden;
   }
@@ -149,33 +149,33 @@ FollowOutcome ReferenceFollower::outcome() const noexcept {
   return far ? FollowOutcome::jumped : FollowOutcome::followed;
 }
 
-void ReferenceFollower::decide() noexcept {
+void RobotPoseTracker::decide() noexcept {
   const Pose& was = reference_.T_world_base;
   const Pose& seen = report_.seen.T_world_base;
-  const Vector3 middle = run_.middle();
-  const Vector3 shift = seen * (was.inverse() * middle) - middle;
-  const Vector3 turn = turn_between(seen.rotation, was.rotation);
-  report_.shift_m = shift.norm();
-  report_.turn_rad = turn.norm();
+  const Vector3 centroid = run_.centroid();
+  const Vector3 translation = seen * (was.inverse() * centroid) - centroid;
+  const Vector3 rotation = rotation_vector_between(seen.rotation, was.rotation);
+  report_.shift_m = translation.norm();
+  report_.turn_rad = rotation.norm();
   report_.outcome = outcome();
   report_.jumps = report_.outcome == FollowOutcome::jumped ? report_.jumps + 1 : 0;
   if (report_.outcome != FollowOutcome::followed) return;
   const double passed = (report_.time - reference_.measured).seconds();
   const double gain = 1 - exponential(-std::min(passed / settings.time_constant_s, 700.0));
-  reference_.T_world_base = moved(was, {gain * shift, gain * turn}, middle);
+  reference_.T_world_base = moved(was, {gain * translation, gain * rotation}, centroid);
   reference_.covariance =
       (1 - gain) * (1 - gain) * reference_.covariance + gain * gain * report_.seen.covariance;
   reference_.measured = report_.time;
 }
 
-FollowedReference ReferenceFollower::reference(Time now) const noexcept {
+FollowedReference RobotPoseTracker::reference(Time now) const noexcept {
   FollowedReference out = reference_;
   const double late =
       settings.time_constant_s + std::max(0.0, (now - reference_.measured).seconds());
-  const double shift = settings.drift_m_s * late, turn = settings.drift_rad_s * late;
+  const double translation = settings.drift_m_s * late, rotation = settings.drift_rad_s * late;
   for (int i = 0; i < 3; ++i) {
-    out.covariance(i, i) += shift * shift;
-    out.covariance(i + 3, i + 3) += turn * turn;
+    out.covariance(i, i) += translation * translation;
+    out.covariance(i + 3, i + 3) += rotation * rotation;
   }
   return out;
 }

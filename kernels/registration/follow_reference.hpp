@@ -47,12 +47,12 @@ struct FollowSettings {
   double inlier_share_min = 0.85;
   double seen_through_share_max = 0.08;
   AlignmentSettings alignment = near_alignment();
-  JudgeSettings judge;
+  ScoreSettings judge;
 };
 
 // Excess of a slice: a nearest-point search with all points in one cell, and the fixed work of a
 // slice. The end of an alignment and one splatted point take less.
-inline constexpr int k_follow_item_steps_max = k_nearest_steps_max + k_judged_steps + 512;
+inline constexpr int k_follow_item_steps_max = k_nearest_steps_max + k_score_steps + 512;
 static_assert(k_follow_item_steps_max > k_solve_steps + k_pair_steps &&
               k_follow_item_steps_max > k_splat_item_steps_max);
 
@@ -80,10 +80,10 @@ struct FollowReport {
   double shift_m = 0, turn_rad = 0;  // from the reference to the measured pose
   int jumps = 0;                     // consecutive images with outcome jumped
   ModelAlignment seen;
-  Judgement judgement;
+  AlignmentScore judgement;
 };
 
-class ReferenceFollower {
+class RobotPoseTracker {
  public:
   FollowSettings settings;
 
@@ -120,13 +120,13 @@ class ReferenceFollower {
 
   AlignmentScratch scratch_;
   AlignmentRun run_;
-  JudgeRun judge_;
+  AlignmentScoring judge_;
   SceneView view_;
   FollowReport report_;
   FollowedReference reference_;  // without drift
   Time newest_;
   Phase phase_ = Phase::idle;
-  bool known_ = false;
+  bool has_reference_ = false;
 };
 
 }  // namespace glint

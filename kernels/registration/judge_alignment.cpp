@@ -4,18 +4,18 @@
 
 namespace glint {
 
-void JudgeRun::start(const Pose& T_world_base, const JudgeSettings& settings) noexcept {
+void AlignmentScoring::start(const Pose& T_world_base, const ScoreSettings& settings) noexcept {
   T_world_base_ = T_world_base;
   settings_ = settings;
-  result_ = Judgement{};
+  result_ = AlignmentScore{};
   distances_.fill(0);
   distance_count_ = 0;
   view_ = 0;
   phase_ = Phase::begin;
 }
 
-bool JudgeRun::step(std::span<const SceneView> views, StepBudget& budget,
-                    AlignmentScratch& scratch) noexcept {
+bool AlignmentScoring::step(std::span<const SceneView> views, StepBudget& budget,
+                            AlignmentScratch& scratch) noexcept {
   if (phase_ == Phase::begin) {
     if (!scene_fits(views, scratch)) {
       result_.reason = Reason::not_prepared;
@@ -39,7 +39,7 @@ bool JudgeRun::step(std::span<const SceneView> views, StepBudget& budget,
     outline(view, budget, memory);
   } else {
     look(view, budget, memory);
-    if (at_ == memory.seen_count) {
+    if (at_ == memory.visible_count) {
       ++view_;
       begin_view(views);
     }
@@ -47,17 +47,17 @@ bool JudgeRun::step(std::span<const SceneView> views, StepBudget& budget,
   return phase_ == Phase::done;
 }
 
-void JudgeRun::begin_view(std::span<const SceneView> views) noexcept {
+void AlignmentScoring::begin_view(std::span<const SceneView> views) noexcept {
   at_ = 0;
   indexing_.start();
   phase_ = view_ < views.size() ? Phase::index : Phase::done;
   if (phase_ == Phase::done) result_.median_m = median_m();
 }
 
-void JudgeRun::outline(const SceneView& view, StepBudget& budget,
-                       const AlignmentScratch::View& memory) noexcept {
+void AlignmentScoring::outline(const SceneView& view, StepBudget& budget,
+                               const AlignmentScratch::View& memory) noexcept {
   const int pixels = view.camera.width * view.camera.height;
-  const int end = budget.end_of(at_, pixels, k_outline_pixel_steps);
+  const int end = budget.take_items(at_, pixels, k_outline_pixel_steps);
   add_outline(view, memory.z, memory.triangle, settings_.far_m, at_, end, result_.outline);
   for (; at_ < end; ++at_) {
     const auto pixel = static_cast<std::size_t>(at_);
@@ -70,16 +70,16 @@ void JudgeRun::outline(const SceneView& view, StepBudget& budget,
   phase_ = Phase::look;
 }
 
-void JudgeRun::look(const SceneView& view, StepBudget& budget,
-                    const AlignmentScratch::View& memory) noexcept {
-  for (; at_ < memory.seen_count && !budget.spent(); ++at_) {
-    budget.take(k_judged_steps);
-    look_at(view, memory.seen[static_cast<std::size_t>(at_)], memory.grid, budget);
+void AlignmentScoring::look(const SceneView& view, StepBudget& budget,
+                            const AlignmentScratch::View& memory) noexcept {
+  for (; at_ < memory.visible_count && !budget.spent(); ++at_) {
+    budget.take(k_score_steps);
+    score_point(view, memory.seen[static_cast<std::size_t>(at_)], memory.grid, budget);
   }
 }
 
-void JudgeRun::look_at(const SceneView& view, const SeenPoint& seen, const PointGrid& grid,
-                       StepBudget& budget) noexcept {
+void AlignmentScoring::score_point(const SceneView& view, const VisiblePoint& seen,
+                                   const PointGrid& grid, StepBudget& budget) noexcept {
   const auto pixel = static_cast<std::size_t>(seen.pixel);
   ++result_.rendered;
   const float z = view.depth_m[pixel];
@@ -87,12 +87,12 @@ void JudgeRun::look_at(const SceneView& view, const SeenPoint& seen, const Point
   ++result_.measured;
   const double behind = static_cast<double>(z - seen.point.z());
   // A pixel outside the mask hides the model at any distance in front of it.
-  const bool something_else = !view.may_be_model(pixel) && behind < 0;
-  if (something_else || behind < -settings_.far_m) {
-    ++result_.hidden;
+  const bool occluded_by_mask = !view.may_be_model(pixel) && behind < 0;
+  if (occluded_by_mask || behind < -settings_.far_m) {
+    ++result_.occluded;
     return;
   }
-  if (behind > settings_.far_m) ++result_.seen_through;
+  if (behind > settings_.far_m) ++result_.free_space_violations;
   const Nearest nearest =
       grid.nearest(seen.point, static_cast<float>(k_distance_steps * k_distance_step_m), budget);
   const double distance = std::sqrt(static_cast<double>(nearest.square_m2));
@@ -102,7 +102,7 @@ void JudgeRun::look_at(const SceneView& view, const SeenPoint& seen, const Point
   ++distance_count_;
 }
 
-double JudgeRun::median_m() const noexcept {
+double AlignmentScoring::median_m() const noexcept {
   int below = 0;
   for (int i = 0; i <= k_distance_steps; ++i) {
     below += distances_[static_cast<std::size_t>(i)];
@@ -111,9 +111,9 @@ double JudgeRun::median_m() const noexcept {
   return 0;
 }
 
-Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_base,
-                          const JudgeSettings& settings, AlignmentScratch& scratch) noexcept {
-  JudgeRun run;
+AlignmentScore score_alignment(std::span<const SceneView> views, const Pose& T_world_base,
+                               const ScoreSettings& settings, AlignmentScratch& scratch) noexcept {
+  AlignmentScoring run;
   run.start(T_world_base, settings);
   for (StepBudget all; !run.step(views, all, scratch); all = StepBudget()) {
   }

@@ -4,10 +4,10 @@ namespace glint {
 namespace {
 
 void count_links(const SceneView& view, std::span<const std::uint16_t> numbers,
-                 const JudgeSettings& settings, const AlignmentScratch::View& memory,
-                 LinkJudgement& judgement) noexcept {
-  for (int i = 0; i < memory.seen_count; ++i) {
-    const SeenPoint& seen = memory.seen[static_cast<std::size_t>(i)];
+                 const ScoreSettings& settings, const AlignmentScratch::View& memory,
+                 LinkScores& judgement) noexcept {
+  for (int i = 0; i < memory.visible_count; ++i) {
+    const VisiblePoint& seen = memory.seen[static_cast<std::size_t>(i)];
     const auto pixel = static_cast<std::size_t>(seen.pixel);
     const auto part = static_cast<std::size_t>(memory.triangle[pixel]);
     if (part >= numbers.size() || numbers[part] >= judgement.links.size()) continue;
@@ -18,7 +18,7 @@ void count_links(const SceneView& view, std::span<const std::uint16_t> numbers,
     if (something_else || behind < -settings.far_m) continue;
     LinkCounts& link = judgement.links[numbers[part]];
     ++link.looked_at;
-    link.seen_through += behind > settings.far_m ? 1 : 0;
+    link.free_space_violations += behind > settings.far_m ? 1 : 0;
     const Nearest nearest = memory.grid.nearest(seen.point, static_cast<float>(settings.inlier_m));
     link.explained += nearest.index >= 0 ? 1 : 0;
   }
@@ -26,11 +26,11 @@ void count_links(const SceneView& view, std::span<const std::uint16_t> numbers,
 
 }  // namespace
 
-LinkJudgement judge_links(std::span<const SceneView> views,
-                          std::span<const std::span<const std::uint16_t>> link_numbers,
-                          const Pose& T_world_base, const JudgeSettings& settings,
-                          AlignmentScratch& scratch) noexcept {
-  LinkJudgement judgement;
+LinkScores score_links(std::span<const SceneView> views,
+                       std::span<const std::span<const std::uint16_t>> link_numbers,
+                       const Pose& T_world_base, const ScoreSettings& settings,
+                       AlignmentScratch& scratch) noexcept {
+  LinkScores judgement;
   if (!scene_fits(views, scratch)) {
     judgement.reason = Reason::not_prepared;
     return judgement;
@@ -38,7 +38,7 @@ LinkJudgement judge_links(std::span<const SceneView> views,
   for (std::size_t v = 0; v < views.size() && v < link_numbers.size(); ++v) {
     if (link_numbers[v].empty()) continue;
     AlignmentScratch::View& memory = scratch.views[v];
-    search_scene(views[v], 1, settings.inlier_m, memory);
+    index_scene(views[v], 1, settings.inlier_m, memory);
     render_model(views[v], T_world_base, 1, memory);
     count_links(views[v], link_numbers[v], settings, memory, judgement);
   }

@@ -19,19 +19,19 @@
 namespace glint {
 
 struct LinkCounts {
-  int looked_at = 0, explained = 0, seen_through = 0;  // pixels
+  int looked_at = 0, explained = 0, free_space_violations = 0;  // pixels
 };
 
-struct LinkJudgement {
+struct LinkScores {
   std::array<LinkCounts, k_robot_links_max> links;
   Reason reason = Reason::none;  // not_prepared: the scratch is too small for the views
 };
 
 // link_numbers: per view the link of each triangle, or of each point of a point cloud model.
 // Ignores a view without numbers, and a number that is no link.
-[[nodiscard]] LinkJudgement judge_links(
-    std::span<const SceneView> views, std::span<const std::span<const std::uint16_t>> link_numbers,
-    const Pose& T_world_base, const JudgeSettings& settings,
-    AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] LinkScores score_links(std::span<const SceneView> views,
+                                     std::span<const std::span<const std::uint16_t>> link_numbers,
+                                     const Pose& T_world_base, const ScoreSettings& settings,
+                                     AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -16,7 +16,7 @@ int pixel_of(const Pinhole& camera, const Vector3& p) noexcept {
 
 // Returns true if the measured depth at a point's pixel is nearer than the point by more than the
 // gate (occlusion).
-bool hidden(const SceneView& view, const Vector3& p, double gate_m) noexcept {
+bool occluded(const SceneView& view, const Vector3& p, double gate_m) noexcept {
   const int pixel = pixel_of(view.camera, p);
   if (pixel < 0) return false;
   const double z = static_cast<double>(view.depth_m[static_cast<std::size_t>(pixel)]);
@@ -25,14 +25,14 @@ bool hidden(const SceneView& view, const Vector3& p, double gate_m) noexcept {
 
 }  // namespace
 
-void add_pairs(std::span<const SeenPoint> points, const Pose& T_moved, Matching matching,
+void add_pairs(std::span<const VisiblePoint> points, const Pose& T_moved, Matching matching,
                double gate_m, const SceneView& view, const SceneSearch& search,
-               const Quaternion& turn, const Vector3& middle, AlignmentSums& sums) noexcept {
-  const Matrix3 moved = T_moved.rotation.toRotationMatrix(), to_world = turn.toRotationMatrix();
-  for (const SeenPoint& seen : points) {
+               const Quaternion& rotation, const Vector3& centroid, AlignmentSums& sums) noexcept {
+  const Matrix3 moved = T_moved.rotation.toRotationMatrix(), to_world = rotation.toRotationMatrix();
+  for (const VisiblePoint& seen : points) {
     const Vector3 p = moved * seen.point.cast<double>() + T_moved.translation;
     const Vector3 normal = moved * seen.normal.cast<double>();
-    const Vector3 lever = to_world * (p - middle);
+    const Vector3 lever = to_world * (p - centroid);
     if (matching == Matching::projective) {
       const int pixel = pixel_of(view.camera, p);
       if (pixel < 0 || !view.may_be_model(static_cast<std::size_t>(pixel))) continue;
@@ -40,19 +40,20 @@ void add_pairs(std::span<const SeenPoint> points, const Pose& T_moved, Matching 
       const double away = p.z() - z;
       if (!(z > 0) || !(std::abs(away) <= gate_m)) continue;
       const double range = p.norm(), cosine = -normal.dot(p) / range;
-      if (cosine < k_least_cosine) continue;
+      if (cosine < k_cosine_min) continue;
       sums.add(lever, to_world * normal * (-1 / cosine), away * range / p.z(), 1);
       continue;
     }
-    if (hidden(view, p, gate_m)) continue;
+    if (occluded(view, p, gate_m)) continue;
     const Nearest nearest = search.grid->nearest(p.cast<float>(), static_cast<float>(gate_m));
     if (nearest.index < 0) continue;
-    const Vector3 apart = p - search.points[static_cast<std::size_t>(nearest.index)].cast<double>();
+    const Vector3 difference =
+        p - search.points[static_cast<std::size_t>(nearest.index)].cast<double>();
     if (matching == Matching::plane) {
-      sums.add(lever, to_world * normal, normal.dot(apart), 1);
+      sums.add(lever, to_world * normal, normal.dot(difference), 1);
     } else {
-      const Vector3 pull = to_world * apart;
-      for (int k = 0; k < 3; ++k) sums.add(lever, Vector3::Unit(k), pull(k), 1);
+      const Vector3 residual = to_world * difference;
+      for (int k = 0; k < 3; ++k) sums.add(lever, Vector3::Unit(k), residual(k), 1);
     }
   }
 }

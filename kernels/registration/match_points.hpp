@@ -13,7 +13,7 @@
 // Cost:     a search in the grid, or one pixel access; one or three rows of the sums.
 // Worst:    a search without result visits all cells within the gate.
 // Accuracy: that of the pairs. The projective method discards surfaces with a cosine below
-//           k_least_cosine: there a fraction of a pixel exceeds the depth noise.
+//           k_cosine_min: there a fraction of a pixel exceeds the depth noise.
 // Source:   Besl and McKay 1992 (point); Chen and Medioni 1992 (plane); Blais and Levine 1995
 //           (projective).
 #pragma once
@@ -31,7 +31,7 @@ namespace glint {
 
 enum class Matching : std::uint8_t { point, plane, projective };
 
-inline constexpr double k_least_cosine = 0.2;
+inline constexpr double k_cosine_min = 0.2;
 
 // Search structure of a view's scene.
 struct SceneSearch {
@@ -40,11 +40,11 @@ struct SceneSearch {
 };
 
 // Adds the pairs of `points`, the visible points at the rendered pose, after the model moved by
-// T_moved (camera frame) since. `turn` and `middle` transform lever arms and gradients to the frame
-// of the sums: x_world = turn * x_camera, about `middle` (camera frame).
-void add_pairs(std::span<const SeenPoint> points, const Pose& T_moved, Matching matching,
+// T_moved (camera frame) since. `rotation` and `centroid` transform lever arms and gradients to the
+// frame of the sums: x_world = rotation * x_camera, about `centroid` (camera frame).
+void add_pairs(std::span<const VisiblePoint> points, const Pose& T_moved, Matching matching,
                double gate_m, const SceneView& view, const SceneSearch& search,
-               const Quaternion& turn, const Vector3& middle,
+               const Quaternion& rotation, const Vector3& centroid,
                AlignmentSums& sums) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

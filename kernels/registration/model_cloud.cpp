@@ -26,7 +26,7 @@ bool PoseCloudRun::step(StepBudget& budget) noexcept {
         reason_ = Reason::out_of_range;
         return false;
       }
-      turn_to(robot_.links[at_]);
+      select_link(robot_.links[at_]);
       budget.take(k_posed_link_steps);
     }
     points_[at_] = rotation_ * robot_.cloud.points[at_] + translation_;
@@ -36,7 +36,7 @@ bool PoseCloudRun::step(StepBudget& budget) noexcept {
   return at_ < robot_.links.size();
 }
 
-void PoseCloudRun::turn_to(int link) noexcept {
+void PoseCloudRun::select_link(int link) noexcept {
   const Pose& pose = poses_->T_root_link[static_cast<std::size_t>(link)];
   rotation_ = pose.rotation.toRotationMatrix().cast<float>();
   translation_ = pose.translation.cast<float>();

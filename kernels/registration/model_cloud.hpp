@@ -53,7 +53,7 @@ class PoseCloudRun {
   [[nodiscard]] Reason reason() const noexcept { return reason_; }
 
  private:
-  void turn_to(int link) noexcept;
+  void select_link(int link) noexcept;
 
   LinkCloud robot_;
   const LinkPoses* poses_ = nullptr;

@@ -5,8 +5,8 @@
 
 namespace glint {
 
-OutlineCounts look_beside_outline(const SceneView& view, std::span<const float> model_z,
-                                  std::span<const std::int32_t> triangle, double far_m) noexcept {
+OutlineCounts count_outline(const SceneView& view, std::span<const float> model_z,
+                            std::span<const std::int32_t> triangle, double far_m) noexcept {
   OutlineCounts counts;
   add_outline(view, model_z, triangle, far_m, 0, view.camera.width * view.camera.height, counts);
   return counts;
@@ -34,7 +34,7 @@ void add_outline(const SceneView& view, std::span<const float> model_z,
         const float beside = view.depth_m[at(u, v)];
         if (!(beside > 0)) continue;
         if (beside > z + far) ++counts.falls;
-        if (std::abs(beside - z) <= far) ++counts.goes_on;
+        if (std::abs(beside - z) <= far) ++counts.continues;
         break;
       }
     }

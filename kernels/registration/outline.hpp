@@ -25,14 +25,13 @@ inline constexpr int k_outline_from = 3;
 inline constexpr int k_outline_reach = 8;
 
 struct OutlineCounts {
-  int falls = 0, goes_on = 0;
+  int falls = 0, continues = 0;
 };
 
 // model_z and triangle: output of render_depth.hpp, of the view's size.
-[[nodiscard]] OutlineCounts look_beside_outline(const SceneView& view,
-                                                std::span<const float> model_z,
-                                                std::span<const std::int32_t> triangle,
-                                                double far_m) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] OutlineCounts count_outline(const SceneView& view, std::span<const float> model_z,
+                                          std::span<const std::int32_t> triangle,
+                                          double far_m) noexcept GLINT_NONBLOCKING;
 
 // The same for the pixels [from, to), added to the counts.
 void add_outline(const SceneView& view, std::span<const float> model_z,

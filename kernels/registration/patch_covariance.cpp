@@ -21,9 +21,9 @@ void add_patches(const SceneView& view, const Pose& T_world_base, double gate_m,
   std::fill(memory.patches.begin(), memory.patches.end(), Vector6::Zero());
   const int width = view.camera.width;
   // Adds consecutive points of one patch together.
-  for (int from = 0, to = 0; from < memory.seen_count; from = to) {
+  for (int from = 0, to = 0; from < memory.visible_count; from = to) {
     const int patch = patch_of(memory.seen[static_cast<std::size_t>(from)].pixel, width);
-    while (to < memory.seen_count &&
+    while (to < memory.visible_count &&
            patch_of(memory.seen[static_cast<std::size_t>(to)].pixel, width) == patch) {
       ++to;
     }
@@ -54,10 +54,10 @@ Result<Matrix6> patch_covariance(std::span<const SceneView> views, const Pose& T
     }
   }
   const Result<PoseFactor> factor = pose_factor(all.matrix);
-  if (!factor || patches < k_patches_least) return {{}, Reason::degenerate};
+  if (!factor || patches < k_patches_min) return {{}, Reason::degenerate};
   const Matrix6 inverse = factor.value.inverse();
-  const double taken = static_cast<double>(patches) / (patches - 6);
-  return {taken * inverse * spread * inverse, Reason::none};
+  const double dof_factor = static_cast<double>(patches) / (patches - 6);
+  return {dof_factor * inverse * spread * inverse, Reason::none};
 }
 
 }  // namespace glint

@@ -20,7 +20,7 @@ namespace glint {
 
 inline constexpr int k_patch_pixels = 16;
 // Smallest number of patches with pairs.
-inline constexpr int k_patches_least = 18;
+inline constexpr int k_patches_min = 18;
 
 // Covariance of translation and rotation about the base's origin, world axes, for a model that has
 // converged at T_world_base; gate_m: the last gate of that alignment. Reason: not_prepared (the

@@ -20,7 +20,8 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {  // SplitMix64's final
 // The 125 cells around one, nearest first: a search skips cells farther than its best point.
 struct Offset {
   std::int8_t x, y, z;
-  float least_m;  // in cells: lower bound of the distance between points of the two cells
+  float
+      distance_min_cells;  // in cells: lower bound of the distance between points of the two cells
 };
 constexpr int k_offsets = 125;
 constexpr std::array<Offset, k_offsets> offsets() {
@@ -44,7 +45,7 @@ constexpr std::array<Offset, k_offsets> offsets() {
 }
 constexpr std::array<Offset, k_offsets> k_order = offsets();
 
-bool is_place(const Vector3f& p) noexcept {
+bool has_cell(const Vector3f& p) noexcept {
   return std::abs(p.x()) < k_coordinate_max && std::abs(p.y()) < k_coordinate_max &&
          std::abs(p.z()) < k_coordinate_max;  // false for NaN
 }
@@ -109,7 +110,7 @@ Reason PointGrid::build(std::span<const Vector3f> points, double reach_m) noexce
 void PointGrid::insert(std::size_t i) noexcept {
   slot_of_[i] = -1;
   probes_ = 0;
-  if (!is_place(points_[i])) return;
+  if (!has_cell(points_[i])) return;
   const std::size_t mask = cells_.size() - 1;
   const std::uint64_t key = key_of(cell_of(points_[i]));
   std::size_t at = mixed(key) & mask;
@@ -125,7 +126,7 @@ void PointGrid::insert(std::size_t i) noexcept {
 bool PointGrid::build_step(StepBudget& budget) noexcept {
   const auto cells = static_cast<int>(cells_.size()), points = static_cast<int>(points_.size());
   if (phase_ == Phase::clear) {
-    const int end = budget.end_of(at_, cells, k_grid_clear_steps);
+    const int end = budget.take_items(at_, cells, k_grid_clear_steps);
     std::fill(cells_.begin() + at_, cells_.begin() + end, Cell{});
     at_ = end;
     if (at_ < cells) return false;
@@ -140,7 +141,7 @@ bool PointGrid::build_step(StepBudget& budget) noexcept {
     at_ = 0;
     phase_ = Phase::sum;
   } else if (phase_ == Phase::sum) {
-    for (const int end = budget.end_of(at_, cells, k_grid_sum_steps); at_ < end; ++at_) {
+    for (const int end = budget.take_items(at_, cells, k_grid_sum_steps); at_ < end; ++at_) {
       Cell& cell = cells_[static_cast<std::size_t>(at_)];
       const std::int32_t size = cell.end;
       cell.begin = cell.end = begin_;
@@ -150,7 +151,7 @@ bool PointGrid::build_step(StepBudget& budget) noexcept {
     at_ = 0;
     phase_ = Phase::place;
   } else if (phase_ == Phase::place) {
-    for (const int end = budget.end_of(at_, points, k_grid_place_steps); at_ < end; ++at_) {
+    for (const int end = budget.take_items(at_, points, k_grid_scatter_steps); at_ < end; ++at_) {
       const auto i = static_cast<std::size_t>(at_);
       if (slot_of_[i] < 0) continue;
       Cell& cell = cells_[static_cast<std::size_t>(slot_of_[i])];
@@ -171,11 +172,11 @@ Nearest PointGrid::nearest(const Vector3f& point, float radius_m,
                            StepBudget& budget) const noexcept {
   Nearest best;
   best.square_m2 = radius_m * radius_m;
-  if (count_ == 0 || !is_place(point)) return best;
+  if (count_ == 0 || !has_cell(point)) return best;
   const Eigen::Vector3i middle = cell_of(point);
-  int left = k_grid_points_looked_at;
+  int left = k_grid_points_compared_max;
   for (const Offset& offset : k_order) {
-    const float least = offset.least_m * cell_m_;
+    const float least = offset.distance_min_cells * cell_m_;
     if (least * least > best.square_m2) continue;
     int probes = 0;
     const Cell* cell = find(key_of(middle + Eigen::Vector3i(offset.x, offset.y, offset.z)), probes);
@@ -192,7 +193,7 @@ Nearest PointGrid::nearest(const Vector3f& point, float radius_m,
       }
     }
   }
-  budget.take((k_grid_points_looked_at - left) * k_grid_point_steps);
+  budget.take((k_grid_points_compared_max - left) * k_grid_point_steps);
   return best;
 }
 

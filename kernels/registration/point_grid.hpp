@@ -3,7 +3,8 @@
 // What:     points sorted by cell; the hash of a cell's index finds its points.
 // Cost:     building is linear; a search visits the 27 to 125 cells around its point, nearest
 //           first, and the points in them.
-// Worst:    all points in one cell: a search compares k_grid_points_looked_at of them, in the order
+// Worst:    all points in one cell: a search compares k_grid_points_compared_max of them, in the
+// order
 //           of input, and returns the nearest of those.
 // Accuracy: exact, except in the worst case above; of equally near points the first.
 // Source:   Teschner et al. 2003, "Optimized spatial hashing", section 4.
@@ -20,19 +21,19 @@
 
 namespace glint {
 
-inline constexpr int k_grid_points_looked_at = 4096;  // per search
-inline constexpr int k_grid_probes_max = 64;          // per look-up of a cell
+inline constexpr int k_grid_points_compared_max = 4096;  // per search
+inline constexpr int k_grid_probes_max = 64;             // per look-up of a cell
 
 // Steps per cell cleared, point inserted, cell summed, point placed; per cell looked up, per probe;
 // per point compared.
 inline constexpr int k_grid_clear_steps = 1, k_grid_insert_steps = 24, k_grid_sum_steps = 3,
-                     k_grid_place_steps = 8, k_grid_find_steps = 10, k_grid_probe_steps = 2,
+                     k_grid_scatter_steps = 8, k_grid_find_steps = 10, k_grid_probe_steps = 2,
                      k_grid_point_steps = 4;
 inline constexpr int k_grid_insert_steps_max =
     k_grid_insert_steps + k_grid_probes_max * k_grid_probe_steps;
 inline constexpr int k_nearest_steps_max =
     125 * (k_grid_find_steps + k_grid_probes_max * k_grid_probe_steps) +
-    k_grid_points_looked_at * k_grid_point_steps;
+    k_grid_points_compared_max * k_grid_point_steps;
 
 struct Nearest {
   std::int32_t index = -1;  // index in the input; -1: none within the radius

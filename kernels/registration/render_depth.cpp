@@ -86,7 +86,7 @@ Reason render_depth(const Surface& model, const Pose& T_camera_model, const Pinh
   std::fill(buffer.z_m.begin(), buffer.z_m.end(), 0.0f);
   std::fill(buffer.triangle.begin(), buffer.triangle.end(), -1);
   project_corners(model, T_camera_model, camera, buffer.corners);
-  std::int64_t tests_left = pixels * k_render_tests_a_pixel;
+  std::int64_t tests_left = pixels * k_render_tests_per_pixel;
   for (std::size_t i = 0; i < model.faces.size(); ++i) {
     const Face& face = model.faces[i];
     if (!has(model, face.a) || !has(model, face.b) || !has(model, face.c)) {

@@ -2,7 +2,8 @@
 //
 // What:     transforms and projects triangles into a z-buffer; 1/z is linear in the image.
 // Cost:     a transformation a corner, an edge test a pixel of its bounding box.
-// Worst:    triangles that each fill the image: stops after k_render_tests_a_pixel tests a pixel of
+// Worst:    triangles that each fill the image: stops after k_render_tests_per_pixel tests a pixel
+// of
 //           the image (Reason::search_full); the pixels rendered before remain.
 // Accuracy: depth to float rounding, a relative 1e-7, at the pixel centres. Discards a triangle
 //           with a corner nearer than k_render_near_m.
@@ -20,7 +21,7 @@ namespace glint {
 
 inline constexpr double k_render_near_m = 0.05;
 // A robot's 40,000 triangles take 3 to 8.
-inline constexpr int k_render_tests_a_pixel = 256;
+inline constexpr int k_render_tests_per_pixel = 256;
 
 // A corner in the image.
 struct ProjectedCorner {

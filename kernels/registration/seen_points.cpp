@@ -2,8 +2,8 @@
 
 namespace glint {
 
-int seen_points(const SceneView& view, const Pose& T_camera_base, int step,
-                const DepthBuffer& buffer, std::span<SeenPoint> points) noexcept {
+int visible_points(const SceneView& view, const Pose& T_camera_base, int step,
+                   const DepthBuffer& buffer, std::span<VisiblePoint> points) noexcept {
   const Pinhole& camera = view.camera;
   const Reason reason = render_depth(view.model, T_camera_base, camera, buffer);
   if (reason == Reason::out_of_range || step < 1) return 0;
@@ -16,7 +16,7 @@ int seen_points(const SceneView& view, const Pose& T_camera_base, int step,
       if (number < 0) continue;
       if (count == points.size()) return static_cast<int>(count);
       const Triangle t = view.model.triangle(static_cast<std::size_t>(number));
-      SeenPoint& seen = points[count];
+      VisiblePoint& seen = points[count];
       seen.point = pixel_point(camera, x, y, buffer.z_m[static_cast<std::size_t>(pixel)]);
       const Vector3f across = rotation * (t.b - t.a).cross(t.c - t.a);
       const float length = across.norm();

@@ -17,15 +17,15 @@
 
 namespace glint {
 
-struct SeenPoint {
+struct VisiblePoint {
   Vector3f point, normal;
   std::int32_t pixel = 0;
 };
 
 // Takes every step-th pixel of every step-th row. Returns the number of points written: at most
 // points.size().
-[[nodiscard]] int seen_points(const SceneView& view, const Pose& T_camera_base, int step,
-                              const DepthBuffer& buffer,
-                              std::span<SeenPoint> points) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] int visible_points(const SceneView& view, const Pose& T_camera_base, int step,
+                                 const DepthBuffer& buffer,
+                                 std::span<VisiblePoint> points) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

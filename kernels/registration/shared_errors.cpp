@@ -21,14 +21,14 @@ void add_view(const SceneView& view, const Pose& T_world_base, double gate_m,
   const Matrix3 to_world = view.T_camera_world.inverse().rotation.toRotationMatrix();
   const Vector3 origin = view.T_camera_world * T_world_base.translation;
   const double half_width = 0.5 * view.camera.width, half_height = 0.5 * view.camera.height;
-  for (int i = 0; i < memory.seen_count; ++i) {
-    const SeenPoint& seen = memory.seen[static_cast<std::size_t>(i)];
+  for (int i = 0; i < memory.visible_count; ++i) {
+    const VisiblePoint& seen = memory.seen[static_cast<std::size_t>(i)];
     const auto pixel = static_cast<std::size_t>(seen.pixel);
     const Vector3 p = seen.point.cast<double>(), normal = seen.normal.cast<double>();
     const double z = static_cast<double>(view.depth_m[pixel]);
     const double range = p.norm(), cosine = -normal.dot(p) / range;
     if (!(z > 0) || !view.may_be_model(pixel) || !(std::abs(p.z() - z) <= gate_m) ||
-        cosine < k_least_cosine) {
+        cosine < k_cosine_min) {
       continue;
     }
     // The projective pair of match_points.cpp; its residual is that of a depth error of one metre.
@@ -42,14 +42,14 @@ void add_view(const SceneView& view, const Pose& T_world_base, double gate_m,
 }
 
 // A rotation of a view's rays about one of its axes rotates the base about the camera.
-Matrix6 turned_rays(const SceneView& view, const Pose& T_world_base) noexcept {
+Matrix6 rotated_rays(const SceneView& view, const Pose& T_world_base) noexcept {
   const Pose T_world_camera = view.T_camera_world.inverse();
   const Vector3 lever = T_world_base.translation - T_world_camera.translation;
   Matrix6 sum = Matrix6::Zero();
   for (int axis = 0; axis < 3; ++axis) {
-    const Vector3 turn = T_world_camera.rotation * Vector3::Unit(axis);
+    const Vector3 rotation = T_world_camera.rotation * Vector3::Unit(axis);
     Vector6 moves;
-    moves << turn.cross(lever), turn;
+    moves << rotation.cross(lever), rotation;
     sum += moves * moves.transpose();
   }
   return sum;
@@ -57,9 +57,9 @@ Matrix6 turned_rays(const SceneView& view, const Pose& T_world_base) noexcept {
 
 }  // namespace
 
-Result<Matrix6> shared_error_covariance(std::span<const SceneView> views, const Pose& T_world_base,
-                                        double gate_m, const SharedErrors& errors,
-                                        AlignmentScratch& scratch) noexcept {
+Result<Matrix6> consider_covariance(std::span<const SceneView> views, const Pose& T_world_base,
+                                    double gate_m, const SystematicErrors& errors,
+                                    AlignmentScratch& scratch) noexcept {
   if (!scene_fits(views, scratch)) return {{}, Reason::not_prepared};
   ConsiderSums sums;
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -73,7 +73,7 @@ Result<Matrix6> shared_error_covariance(std::span<const SceneView> views, const 
     covariance += moves * moves.transpose();
   }
   const double ray = errors.ray_sigma_rad * errors.ray_sigma_rad;
-  return {covariance + ray * turned_rays(views[0], T_world_base), Reason::none};
+  return {covariance + ray * rotated_rays(views[0], T_world_base), Reason::none};
 }
 
 }  // namespace glint

@@ -17,7 +17,7 @@
 
 namespace glint {
 
-struct SharedErrors {
+struct SystematicErrors {
   double depth_sigma_m = 0.006;  // of the constant, and of each slope at the image's edge
   double ray_sigma_rad = 0.003;  // one pixel of 320 across 60 deg
 };
@@ -25,8 +25,8 @@ struct SharedErrors {
 // Covariance of translation and rotation about the base's origin, world axes, as
 // patch_covariance(). Reason: not_prepared (the scratch is too small for the views), degenerate (an
 // undetermined degree of freedom).
-[[nodiscard]] Result<Matrix6> shared_error_covariance(
+[[nodiscard]] Result<Matrix6> consider_covariance(
     std::span<const SceneView> views, const Pose& T_world_base, double gate_m,
-    const SharedErrors& errors, AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+    const SystematicErrors& errors, AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -29,7 +29,7 @@ class Splatter {
 
   // Intersects the ray of a pixel's centre with the disc's plane. Returns z if the point is within
   // `radius` spacings of the disc's centre, else 0.
-  [[nodiscard]] float met(const Disc& disc, int x, int y, float radius) const {
+  [[nodiscard]] float intersect(const Disc& disc, int x, int y, float radius) const {
     const Vector3f ray = pixel_point(camera_, x, y, 1.0f);
     const float along = disc.normal.dot(ray);
     if (!(std::abs(along) > 0)) return 0;
@@ -44,13 +44,13 @@ class Splatter {
     const int u = static_cast<int>(at.u), v = static_cast<int>(at.v);
     for (int y = std::max(0, v - reach); y <= std::min(camera_.height - 1, v + reach); ++y) {
       for (int x = std::max(0, u - reach); x <= std::min(camera_.width - 1, u + reach); ++x) {
-        const float z = met(disc, x, y, k_disc_radius);
+        const float z = intersect(disc, x, y, k_disc_radius);
         if (!(z > 0)) continue;
         const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) +
                            static_cast<std::size_t>(x);
-        const std::int32_t had = buffer.triangle[pixel];
-        if (had >= 0 &&
-            !wins(at, z, buffer.corners[static_cast<std::size_t>(had)], buffer.z_m[pixel], x, y)) {
+        const std::int32_t previous = buffer.triangle[pixel];
+        if (previous >= 0 && !wins(at, z, buffer.corners[static_cast<std::size_t>(previous)],
+                                   buffer.z_m[pixel], x, y)) {
           continue;
         }
         buffer.z_m[pixel] = z;
@@ -80,13 +80,13 @@ class Splatter {
 
 Reason CloudSplat::start(const ModelCloud& model, const Pose& T_camera_model, const Pinhole& camera,
                          int raster, const DepthBuffer& buffer,
-                         std::span<SeenPoint> points) noexcept {
+                         std::span<VisiblePoint> points) noexcept {
   model_ = model, T_camera_model_ = T_camera_model, camera_ = camera, raster_ = raster;
   buffer_ = buffer, points_ = points;
   const std::int64_t pixels = std::int64_t{camera.width} * camera.height;
   count_ = 0;
   at_ = 0;
-  tests_left_ = pixels * k_splat_tests_a_pixel;
+  tests_left_ = pixels * k_splat_tests_per_pixel;
   const bool fits =
       camera.width >= 1 && camera.height >= 1 &&
       buffer.z_m.size() == static_cast<std::size_t>(pixels) &&
@@ -102,8 +102,8 @@ bool CloudSplat::step(StepBudget& budget) noexcept {
     const auto pixels = static_cast<int>(buffer_.z_m.size());
     const int from = at_;
     at_ += static_cast<int>(std::min<std::int64_t>(
-        pixels - at_, std::max<std::int64_t>(budget.left(), 1) * k_splat_cleared_a_step));
-    budget.take(1 + (at_ - from) / k_splat_cleared_a_step);
+        pixels - at_, std::max<std::int64_t>(budget.left(), 1) * k_splat_cleared_per_step));
+    budget.take(1 + (at_ - from) / k_splat_cleared_per_step);
     std::fill(buffer_.z_m.begin() + from, buffer_.z_m.begin() + at_, 0.0f);
     std::fill(buffer_.triangle.begin() + from, buffer_.triangle.begin() + at_, -1);
     if (at_ < pixels) return false;
@@ -166,10 +166,10 @@ void CloudSplat::gather_points(StepBudget& budget) noexcept {
     const std::int32_t number = buffer_.triangle[static_cast<std::size_t>(at_)];
     if (number < 0) continue;
     if (count_ == points_.size()) break;
-    budget.take(k_splat_seen_steps);
+    budget.take(k_splat_visible_steps);
     const int x = at_ % camera_.width, y = at_ / camera_.width;
     const Disc disc = splatter.disc(static_cast<std::size_t>(number));
-    const float z = splatter.met(disc, x, y, k_seen_radius);
+    const float z = splatter.intersect(disc, x, y, k_visible_radius);
     if (!(z > 0)) continue;
     points_[count_].point = pixel_point(camera_, x, y, z);
     points_[count_].normal = disc.height > 0 ? Vector3f(-disc.normal) : disc.normal;
@@ -191,8 +191,8 @@ Reason splat_cloud(const ModelCloud& model, const Pose& T_camera_model, const Pi
   return run.reason();
 }
 
-int seen_cloud_points(const SceneView& view, const Pose& T_camera_base, int step,
-                      const DepthBuffer& buffer, std::span<SeenPoint> points) noexcept {
+int visible_cloud_points(const SceneView& view, const Pose& T_camera_base, int step,
+                         const DepthBuffer& buffer, std::span<VisiblePoint> points) noexcept {
   CloudSplat run;
   if (run.start(view.cloud, T_camera_base, view.camera, step, buffer, points) != Reason::none) {
     return 0;

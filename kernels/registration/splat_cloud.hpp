@@ -5,13 +5,13 @@
 //           spacings, so that the discs leave no hole. A pixel keeps the disc nearest to the
 //           camera; of discs of one surface, no farther apart in depth than the spacing, the one
 //           whose centre is nearest to the pixel. A point is visible where a pixel's ray meets its
-//           disc within k_seen_radius spacings of the centre: farther out a disc may extend beyond
-//           the model's edge.
+//           disc within k_visible_radius spacings of the centre: farther out a disc may extend
+//           beyond the model's edge.
 // Cost:     a transformation a point, and a ray-plane intersection for each pixel around it.
 // Worst:    a model near the camera: k_splat_reach pixels on each side; stops after
-//           k_splat_tests_a_pixel tests a pixel of the image (Reason::search_full).
+//           k_splat_tests_per_pixel tests a pixel of the image (Reason::search_full).
 // Accuracy: exact at the pixel's centre on a flat surface; on a curved one the disc's height above
-//           it: 0.1 mm for 4 mm of spacing and a radius of 50 mm. Edges: k_seen_radius spacings.
+//           it: 0.1 mm for 4 mm of spacing and a radius of 50 mm. Edges: k_visible_radius spacings.
 // Source:   visibility splatting, Zwicker et al. 2001, section 3; Botsch and Kobbelt 2003.
 #pragma once
 
@@ -23,15 +23,15 @@
 namespace glint {
 
 inline constexpr float k_disc_radius = 1.5f;
-inline constexpr float k_seen_radius = 0.75f;
+inline constexpr float k_visible_radius = 0.75f;
 inline constexpr int k_splat_reach = 6;
 // 60,000 points at 1.2 m take 20 in an image of 320 x 288.
-inline constexpr int k_splat_tests_a_pixel = 256;
+inline constexpr int k_splat_tests_per_pixel = 256;
 
 // Pixels cleared per step; steps per point, per pixel tested; per pixel of the raster, per visible
 // pixel.
-inline constexpr int k_splat_cleared_a_step = 2, k_splat_point_steps = 40, k_splat_test_steps = 10,
-                     k_splat_pixel_steps = 4, k_splat_seen_steps = 40;
+inline constexpr int k_splat_cleared_per_step = 2, k_splat_point_steps = 40,
+                     k_splat_test_steps = 10, k_splat_pixel_steps = 4, k_splat_visible_steps = 40;
 inline constexpr int k_splat_item_steps_max =
     k_splat_point_steps + (2 * k_splat_reach + 1) * (2 * k_splat_reach + 1) * k_splat_test_steps;
 
@@ -41,7 +41,7 @@ class CloudSplat {
   // Reason::out_of_range as splat_cloud(); step() then returns true at once, without points.
   [[nodiscard]] Reason start(const ModelCloud& model, const Pose& T_camera_model,
                              const Pinhole& camera, int raster, const DepthBuffer& buffer,
-                             std::span<SeenPoint> points) noexcept GLINT_NONBLOCKING;
+                             std::span<VisiblePoint> points) noexcept GLINT_NONBLOCKING;
   // Returns true when rendering is complete and the visible points are written.
   [[nodiscard]] bool step(StepBudget& budget) noexcept GLINT_NONBLOCKING;
 
@@ -57,7 +57,7 @@ class CloudSplat {
   Pose T_camera_model_;
   Pinhole camera_;
   DepthBuffer buffer_;
-  std::span<SeenPoint> points_;
+  std::span<VisiblePoint> points_;
   Phase phase_ = Phase::done;
   Reason reason_ = Reason::none;
   int raster_ = 1, at_ = 0;
@@ -72,9 +72,9 @@ class CloudSplat {
                                  const Pinhole& camera,
                                  const DepthBuffer& buffer) noexcept GLINT_NONBLOCKING;
 
-// As seen_points(), for the view's cloud.
-[[nodiscard]] int seen_cloud_points(const SceneView& view, const Pose& T_camera_base, int step,
-                                    const DepthBuffer& buffer,
-                                    std::span<SeenPoint> points) noexcept GLINT_NONBLOCKING;
+// As visible_points(), for the view's cloud.
+[[nodiscard]] int visible_cloud_points(const SceneView& view, const Pose& T_camera_base, int step,
+                                       const DepthBuffer& buffer,
+                                       std::span<VisiblePoint> points) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -28,11 +28,11 @@ Reason check(const JointTree& tree, std::span<const double> values) noexcept {
 
 Pose motion_of(const TreeJoint& joint, double position) noexcept {
   Pose motion;
-  if (joint.kind == JointKind::turning) {
+  if (joint.kind == JointKind::revolute) {
     const SineCosine half = sine_cosine(0.5 * position);
     const Vector3 v = half.sine * joint.axis;
     motion.rotation = Quaternion(half.cosine, v.x(), v.y(), v.z());
-  } else if (joint.kind == JointKind::sliding) {
+  } else if (joint.kind == JointKind::prismatic) {
     motion.translation = position * joint.axis;
   }
   return motion;

@@ -12,7 +12,7 @@ namespace glint {
 inline constexpr int k_robot_joints_max = 256;
 inline constexpr int k_robot_links_max = k_robot_joints_max + 1;
 
-enum class JointKind : std::uint8_t { fixed, turning, sliding };  // turning: revolute, continuous
+enum class JointKind : std::uint8_t { fixed, revolute, prismatic };  // revolute includes continuous
 
 // Joint i carries link i + 1; link 0 is the root.
 struct TreeJoint {

@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_fd_rotation_least_norm = 0.5;  // a smaller norm is a frame without a pose
+constexpr double k_fd_rotation_norm_min = 0.5;  // a smaller norm is a frame without a pose
 
 // Returns the eight bytes as one word, or Reason::frame_invalid.
 Result<std::uint64_t> checked_word(const CanFrame& frame) {
@@ -31,7 +31,7 @@ Vector3 vector_at(std::uint64_t word, int at, int width, double step) {
                         static_cast<double>(signed_at(word, at + 2 * width, width)));
 }
 
-double unless_over(std::uint64_t value, std::uint64_t over, double step) {
+double value_or_unknown(std::uint64_t value, std::uint64_t over, double step) {
   return value == over ? -1 : static_cast<double>(value) * step;
 }
 
@@ -87,11 +87,12 @@ Result<DecodedQuality> decode_quality(const CanFrame& frame) noexcept {
   q.registration = static_cast<RegistrationState>(unsigned_at(word, 15, 2));
   q.markers = static_cast<std::uint8_t>(unsigned_at(word, 17, 4));
   q.sigma_position_m =
-      unless_over(unsigned_at(word, 21, 10), k_can_sigma_over, k_can_sigma_position_step_m);
-  q.sigma_orientation_rad =
-      unless_over(unsigned_at(word, 31, 10), k_can_sigma_over, k_can_sigma_orientation_step_rad);
-  q.age_s = unless_over(unsigned_at(word, 41, 11), k_can_age_over, k_can_age_step_s);
-  q.registration_rms_m = unless_over(unsigned_at(word, 52, 7), k_can_rms_over, k_can_rms_step_m);
+      value_or_unknown(unsigned_at(word, 21, 10), k_can_sigma_over, k_can_sigma_position_step_m);
+  q.sigma_orientation_rad = value_or_unknown(unsigned_at(word, 31, 10), k_can_sigma_over,
+                                             k_can_sigma_orientation_step_rad);
+  q.age_s = value_or_unknown(unsigned_at(word, 41, 11), k_can_age_over, k_can_age_step_s);
+  q.registration_rms_m =
+      value_or_unknown(unsigned_at(word, 52, 7), k_can_rms_over, k_can_rms_step_m);
   q.buttons = static_cast<std::uint8_t>(unsigned_at(word, 59, 3));
   return {q, Reason::none};
 }
@@ -117,18 +118,19 @@ Result<DecodedFdPose> decode_fd_pose(const CanFrame& frame) noexcept {
   q.state = static_cast<TrackState>(frame.data[3] & 3U);
   q.registration = static_cast<RegistrationState>(frame.data[3] >> 3 & 3U);
   q.buttons = static_cast<std::uint8_t>(frame.data[3] >> 5);
-  q.sigma_position_m = unless_over(word(44, 2), k_can_fd_word_over, k_can_sigma_position_step_m);
+  q.sigma_position_m =
+      value_or_unknown(word(44, 2), k_can_fd_word_over, k_can_sigma_position_step_m);
   q.sigma_orientation_rad =
-      unless_over(word(46, 2), k_can_fd_word_over, k_can_sigma_orientation_step_rad);
-  q.age_s = unless_over(word(48, 2), k_can_fd_word_over, k_can_fd_age_step_s);
+      value_or_unknown(word(46, 2), k_can_fd_word_over, k_can_sigma_orientation_step_rad);
+  q.age_s = value_or_unknown(word(48, 2), k_can_fd_word_over, k_can_fd_age_step_s);
   q.markers = frame.data[50];
-  q.registration_rms_m = unless_over(word(51, 1), k_can_fd_byte_over, k_can_rms_step_m);
+  q.registration_rms_m = value_or_unknown(word(51, 1), k_can_fd_byte_over, k_can_rms_step_m);
   pose.position_m = vector(4, 4, k_can_fd_position_step_m);
   const Vector3 xyz = vector(16, 4, k_can_fd_rotation_step);
   const Quaternion rotation(
       k_can_fd_rotation_step * static_cast<double>(signed_at(word(28, 4), 0, 32)), xyz.x(), xyz.y(),
       xyz.z());
-  if (rotation.norm() > k_fd_rotation_least_norm) pose.rotation = rotation.normalized();
+  if (rotation.norm() > k_fd_rotation_norm_min) pose.rotation = rotation.normalized();
   pose.velocity_m_s = vector(32, 2, k_can_velocity_step_m_s);
   pose.angular_velocity_rad_s = vector(38, 2, k_can_angular_velocity_step_rad_s);
   pose.unix_measurement_ns = static_cast<std::int64_t>(word(52, 8));

@@ -32,7 +32,7 @@ class BoardReader {
     read_system(board);
     read_kernels(board);
     reader_.done();
-    price(board);
+    compute_costs(board);
     return board;
   }
 
@@ -115,7 +115,7 @@ class BoardReader {
     board.system.interrupt_ns = reader.integer("interrupt_ns", 0, 0, k_second);
     board.system.interrupt_gap_ns = reader.integer("interrupt_gap_ns", 0, 0, k_second);
     board.system.can_write_ns = reader.integer("can_write_ns", 0, 0, k_second);
-    board.system.core_handover_ns = reader.integer("core_handover_ns", 0, 0, k_second);
+    board.system.inter_core_delay_ns = reader.integer("core_handover_ns", 0, 0, k_second);
     reader.done();
   }
 
@@ -166,7 +166,7 @@ class BoardReader {
 
 }  // namespace
 
-void price(Board& board) {
+void compute_costs(Board& board) {
   board.costs.clear();
   for (const BoardKernel& kernel : board.kernels) {
     KernelCost cost;

@@ -85,7 +85,7 @@ enum class BoardUse : std::uint8_t { run_here, analyse };
 [[nodiscard]] std::vector<std::string> built_in_boards();
 
 // Computes `costs` from `kernels`.
-void price(Board& board);
+void compute_costs(Board& board);
 
 // Text of a board file; parse_board() reads back the same costs.
 [[nodiscard]] std::string board_text(const Board& board);

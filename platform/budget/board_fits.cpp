@@ -18,6 +18,6 @@ struct FrameChain {
   static constexpr std::int64_t deadline_ns = 22'222'222;  // AHAT at 45 Hz
   static constexpr std::int64_t gap_ns = 22'222'222;
 };
-static_assert(fits<board::k_table, measured_cell_limits(), TickChain, FrameChain>);
+static_assert(meets_deadlines<board::k_table, measured_cell_limits(), TickChain, FrameChain>);
 
 }  // namespace glint

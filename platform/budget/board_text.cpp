@@ -57,7 +57,7 @@ std::string board_text(const Board& board) {
   out << "interrupt_ns = " << board.system.interrupt_ns << "\n";
   out << "interrupt_gap_ns = " << board.system.interrupt_gap_ns << "\n";
   out << "can_write_ns = " << board.system.can_write_ns << "\n";
-  out << "core_handover_ns = " << board.system.core_handover_ns << "\n";
+  out << "core_handover_ns = " << board.system.inter_core_delay_ns << "\n";
   out << "\n# " << (time ? "Nanoseconds" : "Instructions") << " a count.\n";
   for (const BoardKernel& kernel : board.kernels) {
     out << "[kernels." << kernel.loops.kernel << "]\n";

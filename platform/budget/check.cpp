@@ -29,9 +29,9 @@ TaskModel what_if_model(const CheckInput& input, const CheckOptions& options,
   return model;
 }
 
-void check_scale(const Question& question, const CheckOptions& options) {
+void check_scale(const AnalysisInput& analysis_input, const CheckOptions& options) {
   std::string known;
-  for (const TaskGroup& group : question.model.groups) {
+  for (const TaskGroup& group : analysis_input.model.groups) {
     for (const TaskNode& node : group.nodes) {
       if (node.copy == 0) known += (known.empty() ? "" : ", ") + node.name;
     }
@@ -45,23 +45,25 @@ void check_scale(const Question& question, const CheckOptions& options) {
 // Repeats the check with the same schedule for other limits (tools or pixels).
 bool fits(const CheckInput& input, const CheckOptions& options, const Limits& limits) {
   CheckInput other{input.cell, input.board, input.plan, limits, input.foreign};
-  return assess(question_of(other, options)).holds();
+  return assess(analysis_input_of(other, options)).holds();
 }
 
 void add_kernels(CheckResult& result) {
-  const Question& question = result.question;
-  for (std::size_t g = 0; g < question.model.groups.size(); ++g) {
-    const auto& nodes = question.model.groups[g].nodes;
+  const AnalysisInput& analysis_input = result.analysis_input;
+  for (std::size_t g = 0; g < analysis_input.model.groups.size(); ++g) {
+    const auto& nodes = analysis_input.model.groups[g].nodes;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       if (nodes[n].copy != 0) continue;
       KernelSlack slack{g, nodes[n].name, {}, {}};
-      slack.one_copy = largest_factor(
-          question, [&](std::size_t group, std::size_t node) { return group == g && node == n; });
-      slack.all_copies = nodes[n].copies == 1
-                             ? slack.one_copy
-                             : largest_factor(question, [&](std::size_t group, std::size_t node) {
-                                 return group == g && nodes[node].name == nodes[n].name;
-                               });
+      slack.one_copy = largest_factor(analysis_input, [&](std::size_t group, std::size_t node) {
+        return group == g && node == n;
+      });
+      slack.all_copies =
+          nodes[n].copies == 1
+              ? slack.one_copy
+              : largest_factor(analysis_input, [&](std::size_t group, std::size_t node) {
+                  return group == g && nodes[node].name == nodes[n].name;
+                });
       result.kernels.push_back(slack);
     }
   }
@@ -103,27 +105,28 @@ Plan validated_plan(const std::string& file, TaskModel& model, const Limits& lim
   return plan;
 }
 
-Question question_of(const CheckInput& input, const CheckOptions& options) {
-  Question question;
-  question.model = what_if_model(input, options, input.limits);
-  question.plan = input.plan;
-  question.sensor = {input.cell.camera.exposure.nanoseconds,
-                     input.cell.camera.transport.nanoseconds};
-  question.frames = own_frames_of(input.cell, input.limits.tools);
-  question.frames.insert(question.frames.end(), input.foreign.begin(), input.foreign.end());
-  question.rates = bit_rates_of(input.cell);
-  question.frame_to_can_deadline_ns = input.cell.deadlines.frame_to_can.nanoseconds;
-  question.age_deadline_ns = input.cell.lost_after.nanoseconds;
-  return question;
+AnalysisInput analysis_input_of(const CheckInput& input, const CheckOptions& options) {
+  AnalysisInput analysis_input;
+  analysis_input.model = what_if_model(input, options, input.limits);
+  analysis_input.plan = input.plan;
+  analysis_input.sensor = {input.cell.camera.exposure.nanoseconds,
+                           input.cell.camera.transport.nanoseconds};
+  analysis_input.frames = own_frames_of(input.cell, input.limits.tools);
+  analysis_input.frames.insert(analysis_input.frames.end(), input.foreign.begin(),
+                               input.foreign.end());
+  analysis_input.rates = bit_rates_of(input.cell);
+  analysis_input.frame_to_can_deadline_ns = input.cell.deadlines.frame_to_can.nanoseconds;
+  analysis_input.age_deadline_ns = input.cell.lost_after.nanoseconds;
+  return analysis_input;
 }
 
 CheckResult check(const CheckInput& input, const CheckOptions& options) {
   CheckResult result;
-  result.question = question_of(input, options);
-  check_scale(result.question, options);
-  result.assessment = assess(result.question);
-  result.fails = result.assessment.fails;
-  result.bus_load = load_of(result.question.frames, result.question.rates);
+  result.analysis_input = analysis_input_of(input, options);
+  check_scale(result.analysis_input, options);
+  result.assessment = assess(result.analysis_input);
+  result.fails = result.assessment.missed_deadlines;
+  result.bus_load = load_of(result.analysis_input.frames, result.analysis_input.rates);
   for (const auto& [kernel, factor] : options.scale) {
     char text[160];
     std::snprintf(text, sizeof text, "what if: %.80s takes %g times its bound", kernel.c_str(),
@@ -139,16 +142,16 @@ CheckResult check(const CheckInput& input, const CheckOptions& options) {
 
   add_kernels(result);
   const auto everything = [](std::size_t, std::size_t) { return true; };
-  for (std::size_t g = 0; g < result.question.model.groups.size(); ++g) {
+  for (std::size_t g = 0; g < result.analysis_input.model.groups.size(); ++g) {
     result.groups.push_back(largest_factor(
-        result.question, [g](std::size_t group, std::size_t) { return group == g; }));
+        result.analysis_input, [g](std::size_t group, std::size_t) { return group == g; }));
   }
   // Both chains include the frame and the tick group.
-  const auto chain = largest_factor(result.question, [](std::size_t group, std::size_t) {
+  const auto chain = largest_factor(result.analysis_input, [](std::size_t group, std::size_t) {
     return group == k_frame_group_index || group == k_tick_group_index;
   });
   result.chains.assign(result.assessment.chains.size(), chain);
-  result.system = largest_factor(result.question, everything, true);
+  result.system = largest_factor(result.analysis_input, everything, true);
   add_largest(input, options, result);
 
   const double slack = result.system ? slack_percent(*result.system) : -100;

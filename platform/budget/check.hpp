@@ -38,7 +38,7 @@ struct CheckInput {
 [[nodiscard]] Plan validated_plan(const std::string& file, TaskModel& model, const Limits& limits);
 
 // The question with the options applied.
-[[nodiscard]] Question question_of(const CheckInput& input, const CheckOptions& options);
+[[nodiscard]] AnalysisInput analysis_input_of(const CheckInput& input, const CheckOptions& options);
 
 struct KernelSlack {
   std::size_t group = 0;
@@ -48,7 +48,7 @@ struct KernelSlack {
 };
 
 struct CheckResult {
-  Question question;
+  AnalysisInput analysis_input;
   Assessment assessment;
   std::vector<KernelSlack> kernels;
   std::vector<std::optional<double>> groups;  // largest factor on all bounds of a group
@@ -64,8 +64,8 @@ struct CheckResult {
 [[nodiscard]] CheckResult check(const CheckInput& input, const CheckOptions& options);
 
 // Reasons why the bounds do not hold for this schedule on this board.
-[[nodiscard]] std::vector<std::string> void_reasons(const CheckInput& input,
-                                                    const CheckResult& result);
+[[nodiscard]] std::vector<std::string> invalid_reasons(const CheckInput& input,
+                                                       const CheckResult& result);
 
 // Adds to `fails` each observation above its bound.
 void compare_observed(const std::string& summary_file, CheckResult& result);

@@ -47,8 +47,8 @@ ordered_json groups_json(const CheckResult& result) {
 
 ordered_json nodes_json(const CheckResult& result) {
   ordered_json nodes = ordered_json::array();
-  for (std::size_t g = 0; g < result.question.model.groups.size(); ++g) {
-    const TaskGroup& group = result.question.model.groups[g];
+  for (std::size_t g = 0; g < result.analysis_input.model.groups.size(); ++g) {
+    const TaskGroup& group = result.analysis_input.model.groups[g];
     const OrderTimes& times = result.assessment.groups[g].times;
     for (std::size_t n = 0; n < group.nodes.size(); ++n) {
       const KernelSlack* slack = slack_of(result, g, group.nodes[n].name);
@@ -88,8 +88,8 @@ ordered_json chains_json(const CheckResult& result) {
 
 ordered_json can_json(const CheckResult& result) {
   ordered_json frames = ordered_json::array();
-  for (std::size_t f = 0; f < result.question.frames.size(); ++f) {
-    const CanMessage& frame = result.question.frames[f];
+  for (std::size_t f = 0; f < result.analysis_input.frames.size(); ++f) {
+    const CanMessage& frame = result.analysis_input.frames[f];
     frames.push_back({{"name", frame.name},
                       {"identifier", frame.identifier},
                       {"response_us", us_or_null(result.assessment.can[f].response_ns)},
@@ -114,7 +114,7 @@ std::string shown(const std::optional<std::int64_t>& ns) {
 
 }  // namespace
 
-std::vector<std::string> void_reasons(const CheckInput& input, const CheckResult& result) {
+std::vector<std::string> invalid_reasons(const CheckInput& input, const CheckResult& result) {
   std::vector<std::string> reasons = result.what_if;
   if (!input.plan.board_sha256.empty() && input.plan.board_sha256 != input.board.sha256) {
     reasons.push_back("the plan was made from another version of the board file " +
@@ -126,7 +126,7 @@ std::vector<std::string> void_reasons(const CheckInput& input, const CheckResult
 ordered_json check_json(const CheckInput& input, const CheckOptions& options,
                         const CheckResult& result) {
   const Limits& limits = input.limits;
-  const SystemShare& system = result.question.model.system;
+  const SystemShare& system = result.analysis_input.model.system;
   ordered_json json{
       {"board", input.board.name},
       {"board_sha256", input.board.sha256},
@@ -139,7 +139,7 @@ ordered_json check_json(const CheckInput& input, const CheckOptions& options,
         {"tools", limits.tools},
         {"markers_per_tool", limits.markers_per_tool},
         {"blobs", limits.blobs}}},
-      {"void", void_reasons(input, result)},
+      {"void", invalid_reasons(input, result)},
       {"groups", groups_json(result)},
       {"nodes", nodes_json(result)},
       {"chains", chains_json(result)},
@@ -154,7 +154,7 @@ ordered_json check_json(const CheckInput& input, const CheckOptions& options,
         {"interrupt_us", us(system.interrupt_ns)},
         {"interrupt_gap_us", us(system.interrupt_gap_ns)},
         {"can_write_us", us(system.can_write_ns)},
-        {"core_handover_us", us(system.core_handover_ns)}}},
+        {"core_handover_us", us(system.inter_core_delay_ns)}}},
       {"margin_percent", options.margin_percent},
       {"verdict", result.fails.empty() ? "holds" : "fails"},
       {"fails", result.fails}};
@@ -164,7 +164,8 @@ ordered_json check_json(const CheckInput& input, const CheckOptions& options,
 std::string check_table(const CheckInput& input, const CheckResult& result) {
   std::string text = "board    " + input.board.name + "  " + input.board.sha256.substr(0, 16) +
                      line("   %d core%s\n", input.plan.cores, input.plan.cores == 1 ? "" : "s");
-  for (const std::string& reason : void_reasons(input, result)) text += "void     " + reason + "\n";
+  for (const std::string& reason : invalid_reasons(input, result))
+    text += "void     " + reason + "\n";
   text += "\ngroup           priority   makespan   response   deadline us  slack %\n";
   for (std::size_t g = 0; g < result.assessment.groups.size(); ++g) {
     const GroupResponse& group = result.assessment.groups[g];
@@ -188,14 +189,15 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
   }
   text += "\n                                  bound us   may grow %\n" + node_slack_rows(result);
   std::size_t slowest = 0;
-  for (std::size_t f = 1; f < result.question.frames.size(); ++f) {
-    if (result.question.frames[f].deadline_ns == result.question.frames[0].deadline_ns &&
+  for (std::size_t f = 1; f < result.analysis_input.frames.size(); ++f) {
+    if (result.analysis_input.frames[f].deadline_ns ==
+            result.analysis_input.frames[0].deadline_ns &&
         result.assessment.can[f].response_ns > result.assessment.can[slowest].response_ns) {
       slowest = f;
     }
   }
   text += line("\nCAN      %.1f %% of the bus; slowest frame of a tick: %s,%s us after it\n",
-               100 * result.bus_load, result.question.frames[slowest].name.c_str(),
+               100 * result.bus_load, result.analysis_input.frames[slowest].name.c_str(),
                shown(result.assessment.can[slowest].response_ns).c_str());
   text += line("system   slack %s %%", shown_slack(result.system).c_str());
   if (result.system && *result.system > 0) {

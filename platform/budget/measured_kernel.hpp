@@ -21,7 +21,7 @@ enum class InputKind : std::uint8_t {
   worst,     // every loop at its declared maximum, in several variants
   searched,  // worst result of a bounded search from input `number`
 };
-[[nodiscard]] constexpr bool at_its_worst(InputKind kind) {
+[[nodiscard]] constexpr bool is_worst_case(InputKind kind) {
   return kind == InputKind::worst || kind == InputKind::searched;
 }
 

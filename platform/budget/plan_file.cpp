@@ -21,9 +21,9 @@ class PlanParser {
     TomlReader root(table, file_, "");
     plan_.graph_signature = root.text("graph", "");
     if (plan_.graph_signature != signature_) {
-      complain(table.get("graph"),
-               "graph is \"" + plan_.graph_signature + "\"; expected \"" + signature_ +
-                   "\", this program's graphs of the cell's groups " + group_names());
+      fail(table.get("graph"), "graph is \"" + plan_.graph_signature + "\"; expected \"" +
+                                   signature_ + "\", this program's graphs of the cell's groups " +
+                                   group_names());
     }
     plan_.board = root.text("board", "");
     plan_.board_sha256 = root.text("board_sha256", "");
@@ -35,22 +35,22 @@ class PlanParser {
   }
 
  private:
-  struct Place {
+  struct PlannedNodeLine {
     int line = 0;
     std::optional<std::int64_t> start_ns;
     std::int64_t bound_ns = 0;
   };
 
-  [[noreturn]] void complain(int line, const std::string& what) const {
+  [[noreturn]] void fail(int line, const std::string& what) const {
     throw InputError(file_ + ":" + std::to_string(line) + ": " + what);
   }
-  [[noreturn]] void complain(const toml::node* node, const std::string& what) const {
-    complain(node != nullptr ? line_of(*node) : 1, what);
+  [[noreturn]] void fail(const toml::node* node, const std::string& what) const {
+    fail(node != nullptr ? line_of(*node) : 1, what);
   }
   static int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
 
   void read_bus(const toml::table* table) {
-    if (table == nullptr) complain(1, "no [bus]; expected frames, bit_rate, tools and tick_hz");
+    if (table == nullptr) fail(1, "no [bus]; expected frames, bit_rate, tools and tick_hz");
     TomlReader reader(*table, file_, "bus.");
     const bool fd = reader.one_of("frames", "classic", {"classic", "fd"}) == "fd";
     plan_.bus.nominal =
@@ -65,7 +65,7 @@ class PlanParser {
       CanTraffic fits = plan_.traffic;
       while (fits.tools > 1 && check_bus_load(fits, plan_.bus)) --fits.tools;
       const bool found = !check_bus_load(fits, plan_.bus);
-      complain(table, *complaint + (found ? "; " + std::to_string(fits.tools) + " would fit" : ""));
+      fail(table, *complaint + (found ? "; " + std::to_string(fits.tools) + " would fit" : ""));
     }
   }
 
@@ -76,14 +76,14 @@ class PlanParser {
                                    ? table->get("name")->value_or(std::string())
                                    : std::string();
       const auto g = index_of_group(name);
-      if (!g) complain(table, "group \"" + name + "\"; expected one of " + group_names());
-      if (by_group[*g] != nullptr) complain(table, "a second group \"" + name + "\"; expected one");
+      if (!g) fail(table, "group \"" + name + "\"; expected one of " + group_names());
+      if (by_group[*g] != nullptr) fail(table, "a second group \"" + name + "\"; expected one");
       by_group[*g] = table;
     }
     for (std::size_t g = 0; g < by_group.size(); ++g) {
       if (by_group[g] == nullptr) {
-        complain(1, "no group \"" + model_.groups[g].name + "\"; expected one of each of " +
-                        group_names());
+        fail(1, "no group \"" + model_.groups[g].name + "\"; expected one of each of " +
+                    group_names());
       }
       read_group(g, *by_group[g]);
     }
@@ -95,23 +95,23 @@ class PlanParser {
     group.name = reader.text("name", "");
     group.priority = static_cast<int>(reader.integer("priority", 1, 1, 99));
     group.optimal = reader.boolean("optimal", false);
-    group.least_possible_ns = reader.integer("least_possible_ns", 0, 0, INT64_MAX);
+    group.makespan_lower_bound_ns = reader.integer("least_possible_ns", 0, 0, INT64_MAX);
     const std::vector<const toml::table*> nodes = reader.tables("nodes");
     reader.done();
 
-    std::map<int, Place> places;
+    std::map<int, PlannedNodeLine> lines;
     std::vector<std::vector<int>> orders(static_cast<std::size_t>(plan_.cores));
-    for (const toml::table* node : nodes) read_node(g, *node, places, orders);
+    for (const toml::table* node : nodes) read_node(g, *node, lines, orders);
     for (std::size_t n = 0; n < model_.groups[g].nodes.size(); ++n) {
-      if (places.count(static_cast<int>(n)) != 0) continue;
-      complain(&table, "group \"" + group.name + "\" leaves out " +
-                           node_name(model_.groups[g].nodes[n]) + "; expected every node once");
+      if (lines.count(static_cast<int>(n)) != 0) continue;
+      fail(&table, "group \"" + group.name + "\" leaves out " +
+                       node_name(model_.groups[g].nodes[n]) + "; expected every node once");
     }
-    settle(g, places, orders, group);
+    compute_starts(g, lines, orders, group);
     plan_.groups.push_back(group);
   }
 
-  void read_node(std::size_t g, const toml::table& table, std::map<int, Place>& places,
+  void read_node(std::size_t g, const toml::table& table, std::map<int, PlannedNodeLine>& lines,
                  std::vector<std::vector<int>>& orders) {
     TomlReader reader(table, file_, "group.nodes.");
     const std::string name = reader.text("node", "");
@@ -121,50 +121,50 @@ class PlanParser {
     reader.done();
     const auto n = index_of_node(g, name);
     if (!n) {
-      complain(&table, "node \"" + name + "\" is not in group \"" + model_.groups[g].name +
-                           "\"; expected one of " + node_names(g));
+      fail(&table, "node \"" + name + "\" is not in group \"" + model_.groups[g].name +
+                       "\"; expected one of " + node_names(g));
     }
     if (core < 0 || core >= plan_.cores) {
-      complain(&table, name + " on core " + std::to_string(core) + "; expected 0 to " +
-                           std::to_string(plan_.cores - 1));
+      fail(&table, name + " on core " + std::to_string(core) + "; expected 0 to " +
+                       std::to_string(plan_.cores - 1));
     }
-    if (places.count(*n) != 0) {
-      complain(&table, name + " stands here again, first in line " +
-                           std::to_string(places[*n].line) + "; expected every node once");
+    if (lines.count(*n) != 0) {
+      fail(&table, name + " stands here again, first in line " + std::to_string(lines[*n].line) +
+                       "; expected every node once");
     }
-    places[*n] = {line_of(table), start < 0 ? std::nullopt : std::optional(start), bound};
+    lines[*n] = {line_of(table), start < 0 ? std::nullopt : std::optional(start), bound};
     orders[static_cast<std::size_t>(core)].push_back(*n);
   }
 
   // Checks the given start times; computes the missing ones.
-  void settle(std::size_t g, std::map<int, Place>& places,
-              const std::vector<std::vector<int>>& orders, PlannedGroup& group) {
+  void compute_starts(std::size_t g, std::map<int, PlannedNodeLine>& lines,
+                      const std::vector<std::vector<int>>& orders, PlannedGroup& group) {
     TaskGroup bounded = model_.groups[g];
-    for (auto& [n, place] : places) {
-      bounded.nodes[static_cast<std::size_t>(n)].bound_ns = place.bound_ns;
+    for (auto& [n, node_line] : lines) {
+      bounded.nodes[static_cast<std::size_t>(n)].bound_ns = node_line.bound_ns;
     }
-    const auto times = times_of(bounded, orders, model_.system.core_handover_ns);
-    if (!times) complain_of_cycle(g, places, orders);
+    const auto times = times_of(bounded, orders, model_.system.inter_core_delay_ns);
+    if (!times) fail_on_cycle(g, lines, orders);
     for (std::size_t core = 0; core < orders.size(); ++core) {
       for (const int n : orders[core]) {
-        const Place& place = places[n];
+        const PlannedNodeLine& node_line = lines[n];
         const std::int64_t earliest = times->start_ns[static_cast<std::size_t>(n)];
-        if (place.start_ns && *place.start_ns < earliest) {
-          complain(place.line, node_name(bounded.nodes[static_cast<std::size_t>(n)]) +
-                                   " starts at " + std::to_string(*place.start_ns) +
+        if (node_line.start_ns && *node_line.start_ns < earliest) {
+          fail(node_line.line, node_name(bounded.nodes[static_cast<std::size_t>(n)]) +
+                                   " starts at " + std::to_string(*node_line.start_ns) +
                                    " ns; expected at least " + std::to_string(earliest) +
                                    ", after what it waits for");
         }
-        plan_.nodes.push_back(
-            {static_cast<int>(g), n, static_cast<int>(core), earliest, earliest + place.bound_ns});
+        plan_.nodes.push_back({static_cast<int>(g), n, static_cast<int>(core), earliest,
+                               earliest + node_line.bound_ns});
       }
     }
     group.makespan_ns = times->makespan_ns;
   }
 
   // Names the first node that waits for one which its core or another runs only after it.
-  [[noreturn]] void complain_of_cycle(std::size_t g, const std::map<int, Place>& places,
-                                      const std::vector<std::vector<int>>& orders) const {
+  [[noreturn]] void fail_on_cycle(std::size_t g, const std::map<int, PlannedNodeLine>& lines,
+                                  const std::vector<std::vector<int>>& orders) const {
     std::vector<bool> ran(model_.groups[g].nodes.size(), false);
     std::vector<std::size_t> next(orders.size(), 0);
     const auto waits_for = [&](int n) {
@@ -185,16 +185,16 @@ class PlanParser {
     for (std::size_t core = 0; core < orders.size(); ++core) {
       if (next[core] == orders[core].size()) continue;
       const int n = orders[core][next[core]];
-      if (places.at(n).line < line) {
-        line = places.at(n).line;
+      if (lines.at(n).line < line) {
+        line = lines.at(n).line;
         stuck = n;
       }
     }
     const auto name = [&](int n) {
       return node_name(model_.groups[g].nodes[static_cast<std::size_t>(n)]);
     };
-    complain(line, "a cycle: " + name(stuck) + " waits for " + name(waits_for(stuck)) +
-                       ", which in these orders runs only after it; expected it before");
+    fail(line, "a cycle: " + name(stuck) + " waits for " + name(waits_for(stuck)) +
+                   ", which in these orders runs only after it; expected it before");
   }
 
   [[nodiscard]] std::optional<std::size_t> index_of_group(const std::string& name) const {

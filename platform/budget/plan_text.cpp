@@ -40,8 +40,9 @@ std::string plan_text(const Plan& plan, const TaskModel& model) {
     text += line("\n[[group]]   # %lld ns from its release to its end, undisturbed\n",
                  wide(group.makespan_ns));
     text += "name = \"" + group.name + "\"\n";
-    text += line("priority = %d\noptimal = %s\nleast_possible_ns = %lld\nnodes = [\n",
-                 group.priority, group.optimal ? "true" : "false", wide(group.least_possible_ns));
+    text +=
+        line("priority = %d\noptimal = %s\nleast_possible_ns = %lld\nnodes = [\n", group.priority,
+             group.optimal ? "true" : "false", wide(group.makespan_lower_bound_ns));
     const auto orders = core_orders(plan, static_cast<int>(g));
     for (std::size_t core = 0; core < orders.size(); ++core) {
       for (const int n : orders[core]) {

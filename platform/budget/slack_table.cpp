@@ -28,7 +28,7 @@ std::string shown_slack(const std::optional<double>& factor) {
 std::string node_slack_rows(const CheckResult& result) {
   std::string text;
   for (const KernelSlack& slack : result.kernels) {
-    for (const TaskNode& node : result.question.model.groups[slack.group].nodes) {
+    for (const TaskNode& node : result.analysis_input.model.groups[slack.group].nodes) {
       if (node.name != slack.name || node.copy != 0) continue;
       const std::string copies = node.copies > 1 ? " x" + std::to_string(node.copies) : "";
       text += row("node", node.name + copies, node.bound_ns, slack.all_copies);

@@ -21,7 +21,7 @@ std::vector<TaskNode> nodes_of() {
     node.name = std::string(info.name);
     node.copy = info.copy;
     node.copies = info.copies;
-    const graph::NodeSet needed = graph::needs<G>[nodes.size()];
+    const graph::NodeSet needed = graph::predecessors<G>[nodes.size()];
     for (int before = 0; before < G::node_count; ++before) {
       if ((needed >> before & 1U) != 0) node.after.push_back(before);
     }
@@ -80,14 +80,14 @@ TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemSh
   TaskModel model = task_structure_of(cell);
   model.system = system;
   model.groups[k_tick_group_index].can_writes = can_frames_per_tick_max(cell, limits.tools);
-  const auto give = [](TaskGroup& group, const auto& bounds) {
+  const auto set_bounds = [](TaskGroup& group, const auto& bounds) {
     for (std::size_t n = 0; n < bounds.size(); ++n) group.nodes[n].bound_ns = bounds[n];
   };
-  give(model.groups[k_frame_group_index], node_bounds<Tracker>(costs, limits));
-  give(model.groups[k_tick_group_index], node_bounds<Output>(costs, limits));
+  set_bounds(model.groups[k_frame_group_index], node_bounds<Tracker>(costs, limits));
+  set_bounds(model.groups[k_tick_group_index], node_bounds<Output>(costs, limits));
   if (cell.background) {
     TaskGroup& background = model.groups[k_background_group_index];
-    give(background, node_bounds<Background>(costs, limits));
+    set_bounds(background, node_bounds<Background>(costs, limits));
     // An activation is one slice, without a preemption point before its end.
     for (const TaskNode& node : background.nodes) background.longest_slice_ns += node.bound_ns;
   }

@@ -12,9 +12,9 @@ namespace glint {
 
 TaskModel typical_load(const TaskModel& model, const std::string& trace_file) {
   const auto trace = read_trace(trace_file);
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::int64_t>> taken;
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::int64_t>> durations;
   for (const TraceSpan& span : trace.spans) {
-    if (is_node(span)) taken[{span.group, span.node}].push_back(span.end_ns - span.begin_ns);
+    if (is_node(span)) durations[{span.group, span.node}].push_back(span.end_ns - span.begin_ns);
   }
   TaskModel typical = model;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
@@ -24,7 +24,7 @@ TaskModel typical_load(const TaskModel& model, const std::string& trace_file) {
       const std::string name = node_name(nodes[n]);
       const bool same = g < trace.groups.size() && n < trace.groups[g].nodes.size() &&
                         trace.groups[g].nodes[n] == name;
-      auto& spans = taken[{g, n}];
+      auto& spans = durations[{g, n}];
       if (!same || spans.empty()) {
         throw InputError(trace_file + ":1: has no spans of " + name + " as node " +
                          std::to_string(n) + " of group " + model.groups[g].name +

@@ -14,7 +14,8 @@
 namespace glint {
 namespace {
 
-[[noreturn]] void complain(const std::string& file, std::uint32_t line, const std::string& what) {
+[[noreturn]] void throw_input_error(const std::string& file, std::uint32_t line,
+                                    const std::string& what) {
   throw InputError(file + ":" + std::to_string(line) + ": " + what);
 }
 
@@ -29,18 +30,20 @@ struct Section {
       : file(named), name(section), root(parse_toml(named.text, named.path)) {
     table = root[section].as_table();
     if (table != nullptr) return;
-    complain(file.path, 1,
-             "no table [" + name + "]; expected a file of `glint calibrate " + command + "`");
+    throw_input_error(
+        file.path, 1,
+        "no table [" + name + "]; expected a file of `glint calibrate " + command + "`");
   }
   [[nodiscard]] TomlReader reader() const { return {*table, file.path, name + "."}; }
 
   // Reads a required number, without a default.
-  [[nodiscard]] double needed(TomlReader& reader, const char* key, double low, double high) const {
+  [[nodiscard]] double required(TomlReader& reader, const char* key, double low,
+                                double high) const {
     require(key, "a number");
     return reader.real(key, 0, low, high);
   }
-  [[nodiscard]] std::vector<double> needed(TomlReader& reader, const char* key,
-                                           std::size_t count) const {
+  [[nodiscard]] std::vector<double> required(TomlReader& reader, const char* key,
+                                             std::size_t count) const {
     std::string expected = std::to_string(count);
     expected += " numbers in [ ]";
     require(key, expected);
@@ -48,18 +51,18 @@ struct Section {
   }
   void require(const char* key, const std::string& expected) const {
     if (table->contains(key)) return;
-    complain(file.path, table->source().begin.line,
-             name + "." + key + " is missing; expected " + expected);
+    throw_input_error(file.path, table->source().begin.line,
+                      name + "." + key + " is missing; expected " + expected);
   }
 };
 
 // Reads [from, to] within 0 and `most`.
 ValidRange range_of(const Section& section, TomlReader& reader, const char* key, double most) {
-  const std::vector<double> ends = section.needed(reader, key, 2);
+  const std::vector<double> ends = section.required(reader, key, 2);
   if (ends[0] >= 0 && ends[1] > ends[0] && ends[1] <= most) return {ends[0], ends[1]};
-  complain(section.file.path, reader.line_of(key),
-           section.name + "." + key + " is no range; expected [from, to] within 0 and " +
-               std::to_string(static_cast<int>(most)));
+  throw_input_error(section.file.path, reader.line_of(key),
+                    section.name + "." + key + " is no range; expected [from, to] within 0 and " +
+                        std::to_string(static_cast<int>(most)));
 }
 
 // Cosine decreases with the angle, so the ends swap.
@@ -69,17 +72,18 @@ ValidRange cosines_of(const ValidRange& degrees) {
 }
 
 // Reads two standard deviations at the top level; empty if the file states neither.
-std::optional<std::array<double, 2>> two_sigmas(const NamedFile& file, const char* first,
-                                                const char* second) {
+std::optional<std::array<double, 2>> two_standard_deviations(const NamedFile& file,
+                                                             const char* first,
+                                                             const char* second) {
   const toml::table root = parse_toml(file.text, file.path);
   if (!root.contains(first) && !root.contains(second)) return {};
   const auto sigma = [&](const char* key) {
     const std::optional<double> found = root[key].value<double>();
     if (!found || !(*found >= 0)) {
-      complain(file.path, 1,
-               std::string(key) +
-                   " is missing or no standard deviation; expected a "
-                   "number of 0 or more beside the other one");
+      throw_input_error(file.path, 1,
+                        std::string(key) +
+                            " is missing or no standard deviation; expected a "
+                            "number of 0 or more beside the other one");
     }
     return *found;
   };
@@ -102,7 +106,7 @@ DepthBias depth_bias_of(const NamedFile& file) {
 
 void read_range_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty) {
   const std::optional<std::array<double, 2>> sigmas =
-      two_sigmas(file, "offset_sigma_mm", "mm_per_m_sigma");
+      two_standard_deviations(file, "offset_sigma_mm", "mm_per_m_sigma");
   if (!sigmas) return;
   state_range_uncertainty(1e-3 * (*sigmas)[0], 1e-3 * (*sigmas)[1], uncertainty);
 }
@@ -118,7 +122,7 @@ void state_range_uncertainty(double offset_sigma_m, double slope_sigma,
 
 void read_lens_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty) {
   const std::optional<std::array<double, 2>> sigmas =
-      two_sigmas(file, "principal_point_sigma_px", "focal_sigma");
+      two_standard_deviations(file, "principal_point_sigma_px", "focal_sigma");
   if (!sigmas) return;
   uncertainty.principal_point_px = (*sigmas)[0];
   uncertainty.focal_scale = (*sigmas)[1];
@@ -136,18 +140,19 @@ CameraModel lens_of(const NamedFile& file, const CameraModel& camera) {
   lens.width = static_cast<int>(reader.integer("width", 0, 1, 100'000));
   lens.height = static_cast<int>(reader.integer("height", 0, 1, 100'000));
   if (lens.width != camera.width || lens.height != camera.height) {
-    complain(file.path, reader.line_of("width"),
-             "camera has " + std::to_string(lens.width) + " x " + std::to_string(lens.height) +
-                 " pixels; expected " + std::to_string(camera.width) + " x " +
-                 std::to_string(camera.height) + ", as the cell's camera.model");
+    throw_input_error(file.path, reader.line_of("width"),
+                      "camera has " + std::to_string(lens.width) + " x " +
+                          std::to_string(lens.height) + " pixels; expected " +
+                          std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                          ", as the cell's camera.model");
   }
-  lens.fx = section.needed(reader, "fx_px", 1, 1e6);
-  lens.fy = section.needed(reader, "fy_px", 1, 1e6);
-  lens.cx = section.needed(reader, "cx_px", -1e6, 1e6);
-  lens.cy = section.needed(reader, "cy_px", -1e6, 1e6);
-  const std::vector<double> distortion = section.needed(reader, "k1_k2_p1_p2_k3_k4_k5_k6", 8);
+  lens.fx = section.required(reader, "fx_px", 1, 1e6);
+  lens.fy = section.required(reader, "fy_px", 1, 1e6);
+  lens.cx = section.required(reader, "cx_px", -1e6, 1e6);
+  lens.cy = section.required(reader, "cy_px", -1e6, 1e6);
+  const std::vector<double> distortion = section.required(reader, "k1_k2_p1_p2_k3_k4_k5_k6", 8);
   std::copy(distortion.begin(), distortion.end(), lens.distortion.begin());
-  lens.field_tangent_max = section.needed(reader, "field_tangent", 0.01, 1000);
+  lens.field_tangent_max = section.required(reader, "field_tangent", 0.01, 1000);
   reader.done();
   return lens;
 }
@@ -156,10 +161,10 @@ MotionSettings motion_of(const NamedFile& file) {
   const Section section(file, "motion", "motion");
   TomlReader reader = section.reader();
   MotionSettings motion;
-  motion.linear_noise_m2_s5 = section.needed(reader, "linear_noise_m2_s5", 1e-9, 1e9);
-  motion.linear_damping_1_s = section.needed(reader, "linear_damping_1_s", 1e-3, 1e3);
-  motion.angular_noise_rad2_s5 = section.needed(reader, "angular_noise_rad2_s5", 1e-9, 1e9);
-  motion.angular_damping_1_s = section.needed(reader, "angular_damping_1_s", 1e-3, 1e3);
+  motion.linear_noise_m2_s5 = section.required(reader, "linear_noise_m2_s5", 1e-9, 1e9);
+  motion.linear_damping_1_s = section.required(reader, "linear_damping_1_s", 1e-3, 1e3);
+  motion.angular_noise_rad2_s5 = section.required(reader, "angular_noise_rad2_s5", 1e-9, 1e9);
+  motion.angular_damping_1_s = section.required(reader, "angular_damping_1_s", 1e-3, 1e3);
   reader.done();
   return motion;
 }
@@ -172,8 +177,9 @@ BiasCorrection correction_of(const NamedFile& file) {
   correction.frame = reader.one_of("frame", "", {"tool", "camera"}) == "tool"
                          ? CorrectionFrame::tool
                          : CorrectionFrame::camera;
-  correction.shift_m = 1e-3 * vector_of(section.needed(reader, "shift_mm", 3));
-  correction.turn_rad = k_radians_per_degree * vector_of(section.needed(reader, "turn_deg", 3));
+  correction.translation_m = 1e-3 * vector_of(section.required(reader, "shift_mm", 3));
+  correction.rotation_rad =
+      k_radians_per_degree * vector_of(section.required(reader, "turn_deg", 3));
   const ValidRange range_mm = range_of(section, reader, "range_mm", 100'000);
   correction.range_m = {1e-3 * range_mm.from, 1e-3 * range_mm.to};
   correction.off_axis_cosine = cosines_of(range_of(section, reader, "off_axis_deg", 180));

@@ -65,7 +65,7 @@ void CellParser::read_source(const toml::table* table) {
     cell.source.domain = static_cast<int>(reader.integer("domain", 0, 0, 232));
   }
   cell.source.reliable = reader.boolean("reliable", false);
-  cell.source.place = cell.file + ":" + std::to_string(reader.line_of("kind")) + ": source";
+  cell.source.position = cell.file + ":" + std::to_string(reader.line_of("kind")) + ": source";
   reader.done();
   const auto of_kinds = [&](std::initializer_list<const char*> kinds,
                             std::initializer_list<const char*> keys) {
@@ -114,7 +114,7 @@ void CellParser::read_simulator(const toml::table* table) {
   sim.head_trajectory = path("head_trajectory");
   sim.pen_trajectory = path("pen_trajectory");
   sim.background = path("background");
-  sim.drawn = path("drawn");
+  sim.ground_truth_cell = path("drawn");
   reader.done();
   constexpr double k_field_s_min = 5;
   if (sim.scenario.starts_with("field") && sim.duration_s < k_field_s_min) {
@@ -162,7 +162,7 @@ void read_sinks(TomlReader& root, Cell& cell) {
 constexpr double k_robot_sigma_max_mm = 1000, k_robot_sigma_max_deg = 90;
 
 void read_robot(const toml::table* table, Cell& cell) {
-  cell.robot_given = table != nullptr;
+  cell.robot_valid = table != nullptr;
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "robot.");
   if (const auto position = reader.reals("position_mm", 3)) {
@@ -194,8 +194,8 @@ void CellParser::read_tools(TomlReader& root) {
                      std::to_string(cell.tool_files.size()) + " tools; expected at most " +
                      std::to_string(k_tools_max));
   }
-  if (carried != nullptr) {
-    cell.tools = carried->tools;
+  if (recorded_files != nullptr) {
+    cell.tools = recorded_files->tools;
     return;
   }
   for (const std::string& name : cell.tool_files) {
@@ -213,15 +213,16 @@ void CellParser::read_tools(TomlReader& root) {
                        "\"; expected a name of its own for each");
     }
   }
-  cell.notices = tool_notices(cell.tools, cell.tool_files,
-                              cell.file + ":" + std::to_string(root.line_of("tools")));
+  cell.warnings = tool_warnings(cell.tools, cell.tool_files,
+                                cell.file + ":" + std::to_string(root.line_of("tools")));
 }
 
 }  // namespace
 
-Cell cell_from_text(const std::string& text, const std::string& file, const CellFiles* carried) {
+Cell cell_from_text(const std::string& text, const std::string& file,
+                    const CellFiles* recorded_files) {
   Cell cell;
-  CellParser parser{{cell, carried}};
+  CellParser parser{{cell, recorded_files}};
   cell.file = file;
   cell.text = text;
   const toml::table table = parse_toml(text, file);
@@ -244,7 +245,7 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
       cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);
-  check_followed_robot(root.table("mapping"), cell);
+  check_tracked_robot(root.table("mapping"), cell);
   if (const NamedFile* named = parser.named_by(root, "motion")) cell.motion = motion_of(*named);
   if (const NamedFile* named = parser.named_by(root, "correction")) {
     cell.correction = correction_of(*named);
@@ -272,7 +273,7 @@ Limits limits_of(const Cell& cell) {
   limits.search_steps = cell.budget.search_steps;
   if (cell.background) limits.background_steps = cell.background->steps;
   const bool follows = cell.mapping && !cell.mapping->model.empty();
-  limits.reference_steps = follows ? limits.background_steps : 0;
+  limits.tracking_steps = follows ? limits.background_steps : 0;
   return limits;
 }
 

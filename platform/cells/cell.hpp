@@ -54,14 +54,14 @@ struct FileSettings {
 
 enum class Method : std::uint8_t {
   glint,
-  seed,  // baseline, Puljiz et al.; first tool only; neither real-time nor deterministic
+  baseline,  // baseline, Puljiz et al.; first tool only; neither real-time nor deterministic
 };
 
 // Source of the frames.
 struct SourceSettings {
   std::string kind = "simulator";  // or a kind of platform/sources
   std::string path;                // its file or folder
-  std::string place;               // position in the cell file, for messages
+  std::string position;            // position in the cell file, for messages
   std::string calibration;         // hl2ss_file: its calibration; empty: no head pose
   // dds and rosbag. Empty: selected from the bag's topics; no pose topic.
   std::string reflectivity_topic, depth_topic, camera_info_topic, pose_topic, world_frame;
@@ -77,7 +77,7 @@ struct SimulatorSettings {
   double duration_s = 60;
   std::uint64_t seed = 1;
   // A cell file: ground truth of the field's device and tools is drawn around it; empty: this cell.
-  std::string drawn;
+  std::string ground_truth_cell;
   std::string head_trajectory, pen_trajectory;  // files; scenario = "trajectories"
   double pen_scale = 1.0;                       // scales the pen's motion into view
   // Noise of each marker's image per frame, range at 0.5 m; empty: that of the camera model.
@@ -119,7 +119,7 @@ struct BackgroundSettings {
 struct MappingSettings {
   std::string source;                   // folder of depth images with poses
   Duration period = milliseconds(200);  // between images; replayed forwards and backwards
-  int pictures_a_map = 10;              // number of new images between two maps
+  int images_per_map = 10;              // number of new images between two maps
   int stride = 1;                       // of the pixels used, in both directions
   double voxel_m = 0.01;
   int voxels_max = 1 << 17;
@@ -144,7 +144,7 @@ struct Cell {
   std::vector<ToolChange> tool_changes;  // in time order
   std::vector<std::string> tool_files;
   int reference = -1;                  // index of the static tool; -1: none
-  std::vector<std::string> notices;    // warnings for the user, one line each
+  std::vector<std::string> warnings;   // warnings for the user, one line each
   std::vector<NamedFile> named_files;  // of `glint calibrate`, as read; a recording contains them
   MotionSettings motion;               // built-in, or by [motion] file
   BiasCorrection correction;           // none, or by [correction] file
@@ -168,7 +168,7 @@ struct Cell {
   RecordSettings record;
   FileSettings files;
   Method method = Method::glint;    // chosen on the command line
-  bool robot_given = true;          // T_world_robot is valid; false: poses stay in the world
+  bool robot_valid = true;          // T_world_robot is valid; false: poses stay in the world
   bool robot_in_reference = false;  // T_world_robot is T_reference_robot
   Pose T_world_robot;
   // Standard deviations of T_world_robot per axis, unless `glint reference` measured the pose.
@@ -208,8 +208,8 @@ struct CellFiles {
 
 // Throws InputError: file:line, found, expected.
 [[nodiscard]] Cell load_cell(const std::string& file);
-// With `carried` set opens no other file.
+// With `recorded_files` set opens no other file.
 [[nodiscard]] Cell cell_from_text(const std::string& text, const std::string& file,
-                                  const CellFiles* carried = nullptr);
+                                  const CellFiles* recorded_files = nullptr);
 
 }  // namespace glint

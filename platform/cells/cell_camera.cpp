@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* k_lens_key = "camera.file";
 
-[[noreturn]] void complain(const Cell& cell, std::uint32_t line, const std::string& what) {
+[[noreturn]] void throw_input_error(const Cell& cell, std::uint32_t line, const std::string& what) {
   throw InputError(cell.file + ":" + std::to_string(line) + ": camera" + what);
 }
 
@@ -89,13 +89,14 @@ void read_uncertainty(TomlReader& camera, Cell& cell, const CellFileReader& file
       table->contains("principal_point_px") || table->contains("focal_scale");
   sigma.principal_point_px = reader.real("principal_point_px", sigma.principal_point_px, 0, 50);
   sigma.focal_scale = reader.real("focal_scale", sigma.focal_scale, 0, 0.2);
-  sigma.slow_range_m = metres_of(reader, "slow_range_mm", sigma.slow_range_m, 0, 20);
-  sigma.slow_centroid_px = reader.real("slow_centroid_px", sigma.slow_centroid_px, 0, 2);
+  sigma.correlated_range_m = metres_of(reader, "slow_range_mm", sigma.correlated_range_m, 0, 20);
+  sigma.correlated_centroid_px =
+      reader.real("slow_centroid_px", sigma.correlated_centroid_px, 0, 2);
   sigma.fast_share = reader.real("fast_share", sigma.fast_share, 0, 1);
   CorrelationTimes& times = cell.camera.correlation;
   times.fast_s = reader.real("fast_s", times.fast_s, 0.001, 10'000);
   times.slow_s = reader.real("slow_s", times.slow_s, 0.001, 10'000);
-  sigma.stamp_s = 1e-3 * reader.real("stamp_ms", 1e3 * sigma.stamp_s, 0, 100);
+  sigma.time_stamp_s = 1e-3 * reader.real("stamp_ms", 1e3 * sigma.time_stamp_s, 0, 100);
   reader.done();
 }
 
@@ -112,36 +113,38 @@ void read_sensor(TomlReader& reader, Cell& cell) {
   camera.reflectivity_bits =
       static_cast<int>(reader.integer("reflectivity_bits", camera.reflectivity_bits, 8, 16));
   if (camera.reflectivity_bits != 8 && camera.reflectivity_bits != 16) {
-    complain(cell, reader.line_of("reflectivity_bits"), ".reflectivity_bits: expected 8 or 16");
+    throw_input_error(cell, reader.line_of("reflectivity_bits"),
+                      ".reflectivity_bits: expected 8 or 16");
   }
   camera.period = duration_of(reader, "period_ms", camera.period, 1, 1000);
   camera.exposure = duration_of(reader, "exposure_ms", camera.exposure, 0, 100);
   camera.transport = duration_of(reader, "transport_ms", camera.transport, 0, 1000);
   if (const auto range_mm = reader.reals("range_mm", 2)) {
     if (!((*range_mm)[0] > 0) || !((*range_mm)[1] > (*range_mm)[0]) || (*range_mm)[1] > 20'000) {
-      complain(cell, reader.line_of("range_mm"),
-               ".range_mm: no range; expected [from, to] within 0 and 20000");
+      throw_input_error(cell, reader.line_of("range_mm"),
+                        ".range_mm: no range; expected [from, to] within 0 and 20000");
     }
     camera.range_min_m = 1e-3 * (*range_mm)[0];
     camera.range_max_m = 1e-3 * (*range_mm)[1];
   }
   camera.range_sigma_m = metres_of(reader, "range_sigma_mm", camera.range_sigma_m,
-                                   1e3 * k_range_sigma_least_m, 1e3 * k_range_sigma_most_m);
-  camera.pixel_sigma_px = reader.real("pixel_sigma_px", camera.pixel_sigma_px,
-                                      k_pixel_sigma_least_px, k_pixel_sigma_most_px);
+                                   1e3 * k_range_sigma_min_m, 1e3 * k_range_sigma_max_m);
+  camera.pixel_sigma_px = reader.real("pixel_sigma_px", camera.pixel_sigma_px, k_pixel_sigma_min_px,
+                                      k_pixel_sigma_max_px);
   camera.estimate_noise = reader.boolean("estimate_noise", camera.estimate_noise);
   const int top = camera.reflectivity_bits == 8 ? 255 : 65535;
   camera.threshold =
       static_cast<std::uint16_t>(reader.integer("threshold", camera.threshold, 0, top - 1));
   if (camera.threshold >= top) {  // of a preset with more bits
-    complain(cell, reader.line_of("reflectivity_bits"),
-             ".threshold: " + std::to_string(camera.threshold) + "; expected less than " +
-                 std::to_string(top) + " for 8 bits");
+    throw_input_error(cell, reader.line_of("reflectivity_bits"),
+                      ".threshold: " + std::to_string(camera.threshold) + "; expected less than " +
+                          std::to_string(top) + " for 8 bits");
   }
   if (camera.threshold == 0) {
-    complain(cell, reader.line_of("model"),
-             ".threshold: none; expected the brightness above which a pixel of this camera is a "
-             "marker's");
+    throw_input_error(
+        cell, reader.line_of("model"),
+        ".threshold: none; expected the brightness above which a pixel of this camera is a "
+        "marker's");
   }
 }
 
@@ -163,37 +166,39 @@ void read_camera(const toml::table* table, Cell& cell, const CellFileReader& fil
   const std::string model = reader.text("model", "hololens2_ahat");
   const std::optional<Camera> preset = camera_named(model);
   if (!preset) {
-    complain(cell, reader.line_of("model"),
-             ".model: \"" + model + "\"; expected one of " + camera_names());
+    throw_input_error(cell, reader.line_of("model"),
+                      ".model: \"" + model + "\"; expected one of " + camera_names());
   }
   cell.camera = *preset;
   read_size(reader, cell.camera);
   if (cell.camera.model.width == 0 || cell.camera.model.height == 0) {
-    complain(cell, reader.line_of("model"), ": no width and height; expected both for " + model);
+    throw_input_error(cell, reader.line_of("model"),
+                      ": no width and height; expected both for " + model);
   }
   read_sensor(reader, cell);
   cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
   cell.ray_table = files.resolved(reader.text("ray_table", ""), "camera.ray_table");
   const std::string lens = reader.text("file", "");
   if (!lens.empty() && !cell.ray_table.empty()) {
-    complain(cell, reader.line_of("file"),
-             ".file beside camera.ray_table; expected one lens, not two");
+    throw_input_error(cell, reader.line_of("file"),
+                      ".file beside camera.ray_table; expected one lens, not two");
   }
-  if (!lens.empty() || files.carries(k_lens_key)) {
+  if (!lens.empty() || files.is_recorded(k_lens_key)) {
     const std::string name = lens.empty() ? std::string(k_lens_key) + ".toml" : lens;
     const NamedFile file = files.named_file(name, k_lens_key);
     cell.camera.model = lens_of(file, cell.camera.model);
     use_own_lens(cell);
     read_lens_uncertainty(file, cell.camera.uncertainty);
   }
-  const bool rays_carried = files.carried != nullptr && files.carried->rays != nullptr;
-  if (!cell.ray_table.empty() || rays_carried) use_own_lens(cell);
+  const bool rays_recorded =
+      files.recorded_files != nullptr && files.recorded_files->rays != nullptr;
+  if (!cell.ray_table.empty() || rays_recorded) use_own_lens(cell);
   read_depth_bias(reader, cell, files);
   read_uncertainty(reader, cell, files);
   reader.done();
-  if (files.carried != nullptr) {
-    if (files.carried->rays != nullptr) {
-      set_rays(cell, *files.carried->rays, cell.file + ": rays.f32");
+  if (files.recorded_files != nullptr) {
+    if (files.recorded_files->rays != nullptr) {
+      set_rays(cell, *files.recorded_files->rays, cell.file + ": rays.f32");
     }
   } else if (!cell.ray_table.empty()) {
     cell.camera = with_ray_table(cell.camera, cell.ray_table);

@@ -10,7 +10,7 @@
 namespace glint {
 
 std::string CellFileReader::resolved(const std::string& path, const std::string& key) const {
-  if (carried != nullptr || path.empty()) return path;
+  if (recorded_files != nullptr || path.empty()) return path;
   std::string text = path;
   for (std::size_t from = text.find("${"); from != std::string::npos; from = text.find("${")) {
     const std::size_t to = text.find('}', from);
@@ -29,9 +29,10 @@ std::string CellFileReader::resolved(const std::string& path, const std::string&
 
 const NamedFile& CellFileReader::named_file(const std::string& path, const std::string& key) const {
   NamedFile named{key, resolved(path, key), ""};
-  if (carried == nullptr) {
+  if (recorded_files == nullptr) {
     named.text = read_text(named.path);
-  } else if (const auto text = carried->named.find(key); text != carried->named.end()) {
+  } else if (const auto text = recorded_files->named.find(key);
+             text != recorded_files->named.end()) {
     named.text = text->second;
   } else {
     throw InputError(cell.file + ": no attachment " + key + ".toml; expected the file \"" + path +

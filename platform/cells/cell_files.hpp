@@ -9,7 +9,7 @@ namespace glint {
 
 struct CellFileReader {
   Cell& cell;
-  const CellFiles* carried;  // null: from disk
+  const CellFiles* recorded_files;  // null: from disk
 
   // Replaces ${NAME} by the environment variable; relative paths start at the cell file's folder.
   // Returns the path unchanged if a recording contains the file. Throws InputError: unknown
@@ -17,8 +17,8 @@ struct CellFileReader {
   [[nodiscard]] std::string resolved(const std::string& path, const std::string& key) const;
   // Adds a file of `glint calibrate` to cell.named_files. Throws InputError if it is absent.
   const NamedFile& named_file(const std::string& path, const std::string& key) const;
-  [[nodiscard]] bool carries(const std::string& key) const {
-    return carried != nullptr && carried->named.contains(key);
+  [[nodiscard]] bool is_recorded(const std::string& key) const {
+    return recorded_files != nullptr && recorded_files->named.contains(key);
   }
 };
 

@@ -42,7 +42,7 @@ void read_headset(const toml::table* table, Cell& cell) {
   noise.motion_correlation_s =
       reader.real("motion_correlation_s", noise.motion_correlation_s, 0.001, 1000);
   noise.pivot_m = reader.real("pivot_m", noise.pivot_m, 0, 10);
-  noise.stamp_s = 1e-3 * reader.real("stamp_ms", noise.stamp_s * 1e3, 0, 1000);
+  noise.time_stamp_s = 1e-3 * reader.real("stamp_ms", noise.time_stamp_s * 1e3, 0, 1000);
   reader.done();
 }
 

@@ -28,7 +28,7 @@ void read_mapping(const toml::table& table, const ResolvedPath& path, Cell& cell
     return static_cast<int>(reader.integer(key, otherwise, low, high));
   };
   mapping.period = from_ms(reader.real("period_ms", mapping.period.seconds() * 1e3, 1, 60'000));
-  mapping.pictures_a_map = number("pictures_a_map", mapping.pictures_a_map, 1, 1'000'000);
+  mapping.images_per_map = number("pictures_a_map", mapping.images_per_map, 1, 1'000'000);
   mapping.stride = number("stride", mapping.stride, 1, 64);
   mapping.voxel_m = 1e-3 * reader.real("voxel_mm", mapping.voxel_m * 1e3, 1, 1000);
   mapping.voxels_max = number("voxels_max", mapping.voxels_max, 1, 1 << 22);
@@ -49,9 +49,9 @@ void read_background(const toml::table* background, const toml::table* mapping,
   read_mapping(*mapping, path, cell);
 }
 
-void check_followed_robot(const toml::table* mapping, const Cell& cell) {
+void check_tracked_robot(const toml::table* mapping, const Cell& cell) {
   if (!cell.mapping || cell.mapping->model.empty()) return;
-  if (cell.robot_given && !cell.robot_in_reference) return;
+  if (cell.robot_valid && !cell.robot_in_reference) return;
   throw InputError(cell.file + ":" + std::to_string(mapping->source().begin.line) +
                    ": mapping.model is followed from where [robot] says; expected a [robot] with "
                    "frame = \"world\"");

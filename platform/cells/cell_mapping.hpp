@@ -15,6 +15,6 @@ using ResolvedPath = std::function<std::string(const std::string& path, const st
 void read_background(const toml::table* background, const toml::table* mapping,
                      const ResolvedPath& path, Cell& cell);
 // Call after the robot is read. Throws InputError unless a tracked robot has a pose in the world.
-void check_followed_robot(const toml::table* mapping, const Cell& cell);
+void check_tracked_robot(const toml::table* mapping, const Cell& cell);
 
 }  // namespace glint

@@ -22,7 +22,8 @@ std::string correction_text(const BiasCorrection& correction) {
   std::snprintf(text, sizeof text,
                 "%.2f mm, %.2f deg along the %s axes, valid from %.0f to %.0f mm, %.0f to %.0f deg "
                 "off the axis, tilted by %.0f to %.0f deg",
-                1e3 * correction.shift_m.norm(), k_degrees_per_radian * correction.turn_rad.norm(),
+                1e3 * correction.translation_m.norm(),
+                k_degrees_per_radian * correction.rotation_rad.norm(),
                 correction.frame == CorrectionFrame::tool ? "tool's" : "camera's",
                 1e3 * correction.range_m.from, 1e3 * correction.range_m.to,
                 degrees(correction.off_axis_cosine.to), degrees(correction.off_axis_cosine.from),

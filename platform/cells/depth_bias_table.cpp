@@ -12,7 +12,7 @@ DepthBias depth_bias_of(const toml::table& table, const std::string& file,
   DepthBias bias;
   bias.offset_m = 1e-3 * reader.real("offset_mm", 0, -100, 100);
   bias.per_metre = 1e-3 * reader.real("mm_per_m", 0, -200, 200);
-  bias.dim_m = 1e-3 * reader.real("dim_mm", 0, -100, 100);
+  bias.low_signal_m = 1e-3 * reader.real("dim_mm", 0, -100, 100);
   const auto range_mm = reader.reals("range_mm", 2);
   reader.done();
   // A bias is valid only in the ranges of its measurement, so they are required.
@@ -32,8 +32,8 @@ std::string depth_bias_text(const DepthBias& bias) {
   char text[200];
   std::snprintf(text, sizeof text,
                 "offset_mm = %.4f\nmm_per_m = %.4f\ndim_mm = %.4f\nrange_mm = [%.1f, %.1f]\n",
-                1e3 * bias.offset_m, 1e3 * bias.per_metre, 1e3 * bias.dim_m, 1e3 * bias.range_min_m,
-                1e3 * bias.range_max_m);
+                1e3 * bias.offset_m, 1e3 * bias.per_metre, 1e3 * bias.low_signal_m,
+                1e3 * bias.range_min_m, 1e3 * bias.range_max_m);
   return text;
 }
 

@@ -11,7 +11,7 @@ constexpr std::size_t k_end = std::string_view::npos;
 
 // Returns the position after the string that begins at `at` with a quote. Returns the end of the
 // line for an unterminated string, which the parser refuses.
-std::size_t behind_string(std::string_view text, std::size_t at) {
+std::size_t end_of_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const bool basic = quote == '"';
   const std::string closing(text.substr(at, 3) == std::string(3, quote) ? 3 : 1, quote);
@@ -39,7 +39,7 @@ void check_key_parts(std::string_view text, const std::string& file) {
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
     if (c == '"' || c == '\'') {
-      i = behind_string(text, i);
+      i = end_of_string(text, i);
       continue;
     }
     if (c == '#') {

@@ -64,7 +64,7 @@ std::string read_text(const std::string& file) {
   return read_file(file, k_text_bytes_max, "a TOML file there");
 }
 
-void refuse_toml_state() { throw BrokenState(); }
+void throw_toml_assertion() { throw BrokenState(); }
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
   check_key_parts(text, file);
@@ -79,14 +79,14 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
   }
 }
 
-void TomlReader::complain(const toml::node& where, const char* key,
-                          const std::string& expected) const {
+void TomlReader::throw_input_error(const toml::node& where, const char* key,
+                                   const std::string& expected) const {
   throw InputError(place(file_, where.source()) + ": " + section_ + key + " is " + shown(where) +
                    "; expected " + expected);
 }
 
 const toml::node* TomlReader::find(const char* key) {
-  known_.insert(key);
+  read_keys_.insert(key);
   return table_.get(key);
 }
 
@@ -95,7 +95,7 @@ double TomlReader::real(const char* key, double otherwise, double low, double hi
   if (node == nullptr) return otherwise;
   const auto value = node->value<double>();
   if (!value || !(*value >= low && *value <= high)) {
-    complain(*node, key, "a number from " + number_text(low) + " to " + number_text(high));
+    throw_input_error(*node, key, "a number from " + number_text(low) + " to " + number_text(high));
   }
   return *value;
 }
@@ -106,8 +106,8 @@ std::int64_t TomlReader::integer(const char* key, std::int64_t otherwise, std::i
   if (node == nullptr) return otherwise;
   const auto value = node->value_exact<std::int64_t>();
   if (!value || *value < low || *value > high) {
-    complain(*node, key,
-             "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    throw_input_error(*node, key,
+                      "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
   }
   return *value;
 }
@@ -116,7 +116,7 @@ bool TomlReader::boolean(const char* key, bool otherwise) {
   const toml::node* node = find(key);
   if (node == nullptr) return otherwise;
   const auto value = node->value_exact<bool>();
-  if (!value) complain(*node, key, "true or false");
+  if (!value) throw_input_error(*node, key, "true or false");
   return *value;
 }
 
@@ -124,7 +124,7 @@ std::string TomlReader::text(const char* key, const std::string& otherwise) {
   const toml::node* node = find(key);
   if (node == nullptr) return otherwise;
   const auto value = node->value_exact<std::string>();
-  if (!value || printable(*value) != *value) complain(*node, key, k_text_expected);
+  if (!value || printable(*value) != *value) throw_input_error(*node, key, k_text_expected);
   return *value;
 }
 
@@ -136,7 +136,7 @@ std::string TomlReader::one_of(const char* key, const std::string& otherwise,
     if (value == option) return value;
     list += (list.empty() ? "\"" : ", \"") + std::string(option) + "\"";
   }
-  complain(*table_.get(key), key, "one of " + list);
+  throw_input_error(*table_.get(key), key, "one of " + list);
 }
 
 std::optional<std::vector<double>> TomlReader::reals(const char* key, std::size_t count) {
@@ -144,11 +144,11 @@ std::optional<std::vector<double>> TomlReader::reals(const char* key, std::size_
   if (node == nullptr) return std::nullopt;
   const std::string expected = std::to_string(count) + " numbers in [ ]";
   const toml::array* array = node->as_array();
-  if (array == nullptr || array->size() != count) complain(*node, key, expected);
+  if (array == nullptr || array->size() != count) throw_input_error(*node, key, expected);
   std::vector<double> values;
   for (const toml::node& item : *array) {
     const auto value = item.value<double>();
-    if (!value || !(*value > -1e12 && *value < 1e12)) complain(item, key, expected);
+    if (!value || !(*value > -1e12 && *value < 1e12)) throw_input_error(item, key, expected);
     values.push_back(*value);
   }
   return values;
@@ -158,7 +158,7 @@ std::vector<double> TomlReader::numbers(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return {};
   const toml::array* array = node->as_array();
-  if (array == nullptr) complain(*node, key, "a list of numbers in [ ]");
+  if (array == nullptr) throw_input_error(*node, key, "a list of numbers in [ ]");
   return reals(key, array->size()).value_or(std::vector<double>{});
 }
 
@@ -167,10 +167,10 @@ std::vector<std::string> TomlReader::texts(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return values;
   const toml::array* array = node->as_array();
-  if (array == nullptr) complain(*node, key, "a list of texts in [ ]");
+  if (array == nullptr) throw_input_error(*node, key, "a list of texts in [ ]");
   for (const toml::node& item : *array) {
     const auto value = item.value_exact<std::string>();
-    if (!value || printable(*value) != *value) complain(item, key, k_text_expected);
+    if (!value || printable(*value) != *value) throw_input_error(item, key, k_text_expected);
     values.push_back(*value);
   }
   return values;
@@ -182,13 +182,13 @@ std::vector<std::pair<double, double>> TomlReader::intervals(const char* key) {
   if (node == nullptr) return values;
   const std::string expected = "a list of [from, to] with from < to";
   const toml::array* array = node->as_array();
-  if (array == nullptr) complain(*node, key, expected);
+  if (array == nullptr) throw_input_error(*node, key, expected);
   for (const toml::node& item : *array) {
     const toml::array* pair = item.as_array();
-    if (pair == nullptr || pair->size() != 2) complain(item, key, expected);
+    if (pair == nullptr || pair->size() != 2) throw_input_error(item, key, expected);
     const auto from = pair->get(0)->value<double>();
     const auto to = pair->get(1)->value<double>();
-    if (!from || !to || !(*from < *to)) complain(item, key, expected);
+    if (!from || !to || !(*from < *to)) throw_input_error(item, key, expected);
     values.emplace_back(*from, *to);
   }
   return values;
@@ -197,7 +197,7 @@ std::vector<std::pair<double, double>> TomlReader::intervals(const char* key) {
 const toml::table* TomlReader::table(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return nullptr;
-  if (!node->is_table()) complain(*node, key, "a table [" + section_ + key + "]");
+  if (!node->is_table()) throw_input_error(*node, key, "a table [" + section_ + key + "]");
   return node->as_table();
 }
 
@@ -206,9 +206,9 @@ std::vector<const toml::table*> TomlReader::tables(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return values;
   const toml::array* array = node->as_array();
-  if (array == nullptr) complain(*node, key, "a list of tables");
+  if (array == nullptr) throw_input_error(*node, key, "a list of tables");
   for (const toml::node& item : *array) {
-    if (!item.is_table()) complain(item, key, "a table in { }");
+    if (!item.is_table()) throw_input_error(item, key, "a table in { }");
     values.push_back(item.as_table());
   }
   return values;
@@ -222,11 +222,11 @@ std::uint32_t TomlReader::line_of(const char* key) const {
 void TomlReader::done() const {
   for (const auto& [key, node] : table_) {
     const std::string name(key.str());
-    if (known_.count(name) != 0) continue;
+    if (read_keys_.count(name) != 0) continue;
     std::string list;
-    for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
+    for (const std::string& known : read_keys_) list += (list.empty() ? "" : ", ") + known;
     throw InputError(place(file_, node.source()) + ": unknown key " + section_ + name +
-                     nearest_name_text(name, {known_.begin(), known_.end()}) +
+                     nearest_name_text(name, {read_keys_.begin(), read_keys_.end()}) +
                      "; expected one of " + list);
   }
 }

@@ -11,7 +11,7 @@
 
 namespace glint {
 // Throws the exception that parse_toml catches.
-[[noreturn]] void refuse_toml_state();
+[[noreturn]] void throw_toml_assertion();
 }  // namespace glint
 
 // toml++ 3.3.0 guards its state by assertions only, and some files violate them: `[`, line feed,
@@ -19,7 +19,7 @@ namespace glint {
 // build.
 #define TOML_ENABLE_FORMATTERS 0
 #define TOML_MAX_NESTED_VALUES 64
-#define TOML_ASSERT(state) (static_cast<bool>(state) ? void() : ::glint::refuse_toml_state())
+#define TOML_ASSERT(state) (static_cast<bool>(state) ? void() : ::glint::throw_toml_assertion())
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #include <toml++/impl/preprocessor.h>
@@ -73,14 +73,14 @@ class TomlReader {
   void done() const;
 
  private:
-  [[noreturn]] void complain(const toml::node& where, const char* key,
-                             const std::string& expected) const;
+  [[noreturn]] void throw_input_error(const toml::node& where, const char* key,
+                                      const std::string& expected) const;
   const toml::node* find(const char* key);
 
   const toml::table& table_;
   std::string file_;
   std::string section_;
-  std::set<std::string> known_;
+  std::set<std::string> read_keys_;
 };
 
 }  // namespace glint

@@ -22,7 +22,7 @@ inline constexpr ToolsPresent k_all_tools = 0xFFFF;
 // The set of present tools from `at` on.
 struct ToolChange {
   Time at;
-  ToolsPresent now_there = k_all_tools;
+  ToolsPresent present = k_all_tools;
 };
 
 // Returns the set with empty slots for absent tools.

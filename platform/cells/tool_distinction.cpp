@@ -12,7 +12,7 @@ namespace {
 
 // Squared distances that differ by less, in sigma squared, are equal, so that rounding does not
 // select among the equal exchanges of a symmetric tool.
-constexpr double k_alike = 1e-6;
+constexpr double k_equal_distance = 1e-6;
 
 // As required by propose_labelings() without a prediction.
 int markers_needed(const Tool& tool) {
@@ -20,26 +20,26 @@ int markers_needed(const Tool& tool) {
                     std::max(3, tool.marker_count));
 }
 
-class LikenessSearch {
+class WrongLabelingSearch {
  public:
-  LikenessSearch(const Tool& seen, const Tool& other, int wanted,
-                 const DistinctionSettings& settings)
+  WrongLabelingSearch(const Tool& seen, const Tool& other, int wanted,
+                      const DistinctionSettings& settings)
       : seen_(seen),
         other_(other),
         wanted_(wanted),
         variance_m2_(settings.sigma_m * settings.sigma_m),
         steps_max_(settings.steps_max) {
-    below_m2_ = settings.limit_sigmas * settings.limit_sigmas * variance_m2_;
-    names_.fill(-1);
-    best_.taken_for = names_;
+    bound_m2_ = settings.limit_sigmas * settings.limit_sigmas * variance_m2_;
+    assignment_.fill(-1);
+    best_.assignment = assignment_;
   }
 
-  void run() { name_from(0, 0.0); }
+  void run() { assign_from(0, 0.0); }
 
   // `seen` and `other` are not set.
-  [[nodiscard]] Likeness best() const {
-    Likeness best = best_;
-    best.search_full = full_;
+  [[nodiscard]] WrongLabeling best() const {
+    WrongLabeling best = best_;
+    best.steps_exhausted = full_;
     return best;
   }
   [[nodiscard]] std::int64_t steps() const { return steps_; }
@@ -55,7 +55,7 @@ class LikenessSearch {
   [[nodiscard]] double side_differences_m2(int marker, int name) const {
     double sum = 0;
     for (int j = 0; j < marker; ++j) {
-      const int other_name = names_[at(j)];
+      const int other_name = assignment_[at(j)];
       if (other_name < 0) continue;
       const double difference =
           seen_.distance_m[at(marker)][at(j)] - other_.distance_m[at(name)][at(other_name)];
@@ -65,50 +65,50 @@ class LikenessSearch {
   }
 
   // Recursion depth: at most the number of markers.
-  void name_from(int marker, double differences_m2) {
+  void assign_from(int marker, double differences_m2) {
     if (named_ == wanted_) {
-      judge();
+      evaluate_assignment();
       return;
     }
     for (int name = 0; name < other_.marker_count; ++name) {
       if (((used_ >> name) & 1U) != 0) continue;
       if (!spend(1)) return;
       const double sum = differences_m2 + side_differences_m2(marker, name);
-      if (!(sum < (named_ + 1) * below_m2_)) continue;
-      names_[at(marker)] = name;
+      if (!(sum < (named_ + 1) * bound_m2_)) continue;
+      assignment_[at(marker)] = name;
       used_ |= 1U << name;
       ++named_;
-      name_from(marker + 1, sum);
+      assign_from(marker + 1, sum);
       --named_;
       used_ &= ~(1U << name);
-      names_[at(marker)] = -1;
+      assignment_[at(marker)] = -1;
     }
-    if (seen_.marker_count - marker > wanted_ - named_) name_from(marker + 1, differences_m2);
+    if (seen_.marker_count - marker > wanted_ - named_) assign_from(marker + 1, differences_m2);
   }
 
-  void judge() {
+  void evaluate_assignment() {
     if (&seen_ == &other_ && is_identity()) return;
-    if (!spend(k_fit_steps) || !fixes_a_pose()) return;
-    const double squares_m2 = squares_left_m2(seen_, other_, names_);
-    if (!(squares_m2 < below_m2_)) return;
-    best_.taken_for = names_;
+    if (!spend(k_fit_steps) || !determines_pose()) return;
+    const double squares_m2 = residual_squares_m2(seen_, other_, assignment_);
+    if (!(squares_m2 < bound_m2_)) return;
+    best_.assignment = assignment_;
     best_.markers = named_;
     best_.distance_sigmas = std::sqrt(squares_m2 / variance_m2_);
-    below_m2_ = squares_m2 - k_alike * variance_m2_;
+    bound_m2_ = squares_m2 - k_equal_distance * variance_m2_;
   }
 
   [[nodiscard]] bool is_identity() const {
     for (int i = 0; i < seen_.marker_count; ++i) {
-      if (names_[at(i)] != i) return false;
+      if (assignment_[at(i)] != i) return false;
     }
     return true;
   }
 
   // The tracker's rigid fit refuses other sets.
-  [[nodiscard]] bool fixes_a_pose() const {
+  [[nodiscard]] bool determines_pose() const {
     std::array<Vector3, k_markers_per_tool_max> model;
     std::size_t count = 0;
-    for (const int name : names_) {
+    for (const int name : assignment_) {
       if (name >= 0) model[count++] = other_.markers_m[at(name)];
     }
     return rotation_is_fixed_by(std::span(model.data(), count)) == Reason::none;
@@ -121,25 +121,26 @@ class LikenessSearch {
   int wanted_;
   double variance_m2_;
   std::int64_t steps_max_;
-  double below_m2_ = 0;  // bound: only smaller residuals are of interest
-  TakenFor names_{};
+  double bound_m2_ = 0;  // bound: only smaller residuals are of interest
+  MarkerAssignment assignment_{};
   unsigned used_ = 0;
   int named_ = 0;
   std::int64_t steps_ = 0;
   bool full_ = false;
-  Likeness best_;
+  WrongLabeling best_;
 };
 
 }  // namespace
 
-double squares_left_m2(const Tool& seen, const Tool& other, const TakenFor& taken_for) {
+double residual_squares_m2(const Tool& seen, const Tool& other,
+                           const MarkerAssignment& assignment) {
   std::array<Vector3, k_markers_per_tool_max> from, to;
   std::size_t count = 0;
   Vector3 from_mean = Vector3::Zero(), to_mean = Vector3::Zero();
-  for (std::size_t i = 0; i < taken_for.size(); ++i) {
-    if (taken_for[i] < 0) continue;
+  for (std::size_t i = 0; i < assignment.size(); ++i) {
+    if (assignment[i] < 0) continue;
     from[count] = seen.markers_m[i];
-    to[count] = other.markers_m[static_cast<std::size_t>(taken_for[i])];
+    to[count] = other.markers_m[static_cast<std::size_t>(assignment[i])];
     from_mean += from[count];
     to_mean += to[count];
     ++count;
@@ -170,24 +171,25 @@ Distinction distinguish(const ToolSet& tools, const DistinctionSettings& setting
       const bool swapped = markers_needed(tool(a)) < markers_needed(tool(b));
       const int seen = swapped ? b : a, other = swapped ? a : b;
       const int wanted = a == b ? tool(a).marker_count : markers_needed(tool(other));
-      LikenessSearch search(tool(seen), tool(other), wanted, settings);
+      WrongLabelingSearch search(tool(seen), tool(other), wanted, settings);
       search.run();
-      out.steps_most = std::max(out.steps_most, search.steps());
-      Likeness best = search.best();
-      if (best.markers == 0 && !best.search_full) continue;
+      out.steps_max_used = std::max(out.steps_max_used, search.steps());
+      WrongLabeling best = search.best();
+      if (best.markers == 0 && !best.steps_exhausted) continue;
       if (best.markers == 0) best.distance_sigmas = settings.limit_sigmas;
       best.seen = seen;
       best.other = other;
-      out.likenesses.push_back(best);
+      out.wrong_labelings.push_back(best);
     }
   }
-  std::stable_sort(
-      out.likenesses.begin(), out.likenesses.end(),
-      [](const Likeness& x, const Likeness& y) { return x.distance_sigmas < y.distance_sigmas; });
+  std::stable_sort(out.wrong_labelings.begin(), out.wrong_labelings.end(),
+                   [](const WrongLabeling& x, const WrongLabeling& y) {
+                     return x.distance_sigmas < y.distance_sigmas;
+                   });
   return out;
 }
 
-double wrong_share(double distance_sigmas) {
+double error_probability(double distance_sigmas) {
   return 0.5 * std::erfc(distance_sigmas / (2 * std::sqrt(2.0)));
 }
 

@@ -10,8 +10,9 @@
 //           squared side differences is at most m times the residual of any motion. 16 tools of 8
 //           markers take 0.01 s; 0.1 s if nearly every pair exhausts its steps (the unit test
 //           prints it).
-// Worst:    tools of equal sides, grids: steps_max ends the search of a pair and sets search_full.
-// Accuracy: exact below limit_sigmas. The noise is isotropic with the standard deviation along the
+// Worst:    tools of equal sides, grids: steps_max ends the search of a pair and sets
+// steps_exhausted. Accuracy: exact below limit_sigmas. The noise is isotropic with the standard
+// deviation along the
 //           ray, since the tool's orientation is unknown; a favourable orientation increases the
 //           distance. It is the declared noise at 0.5 m; at a larger range distances are smaller.
 // Source:   least squares from singular values: Umeyama 1991, the lemma. Pruning: the squared
@@ -37,19 +38,20 @@ struct DistinctionSettings {
 };
 
 // For each marker of the seen tool, the assigned marker of the other one.
-using TakenFor = std::array<int, k_markers_per_tool_max>;  // -1: none
+using MarkerAssignment = std::array<int, k_markers_per_tool_max>;  // -1: none
 
-struct Likeness {
+struct WrongLabeling {
   int seen = 0, other = 0;  // indices of tools; equal: own markers exchanged
-  TakenFor taken_for{};
+  MarkerAssignment assignment{};
   int markers = 0;  // assigned; 0: none was found within the limit
   double distance_sigmas = 0;
-  bool search_full = false;  // steps exhausted: a nearer one may exist
+  bool steps_exhausted = false;  // steps exhausted: a nearer one may exist
 };
 
 struct Distinction {
-  std::vector<Likeness> likenesses;  // nearest first: within the limit, or search_full
-  std::int64_t steps_most = 0;       // maximum over the pairs of tools
+  std::vector<WrongLabeling>
+      wrong_labelings;              // nearest first: within the limit, or steps_exhausted
+  std::int64_t steps_max_used = 0;  // maximum over the pairs of tools
 };
 
 // Requires prepared tools. The result is symmetric in seen and other. If the tools need different
@@ -58,12 +60,12 @@ struct Distinction {
 
 // Returns the residual sum of squares of the best rigid motion of the seen tool's markers onto the
 // assigned ones.
-[[nodiscard]] double squares_left_m2(const Tool& seen, const Tool& other,
-                                     const TakenFor& taken_for);
+[[nodiscard]] double residual_squares_m2(const Tool& seen, const Tool& other,
+                                         const MarkerAssignment& assignment);
 
 // Returns the probability that noise makes the wrong one of two hypotheses at this distance fit
 // better, to first order: Phi(-d / 2), likelihood ratio of two normal densities (Van Trees 1968,
 // section 2.2).
-[[nodiscard]] double wrong_share(double distance_sigmas);
+[[nodiscard]] double error_probability(double distance_sigmas);
 
 }  // namespace glint

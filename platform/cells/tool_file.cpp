@@ -28,11 +28,11 @@ Tool load_tool(const std::string& path) {
 
 Tool default_pen() { return tool_from_toml_text(k_pen, "built-in pen"); }
 
-Tool reference_board() { return tool_from_toml_text(k_board, "built-in board"); }
+Tool reference_body() { return tool_from_toml_text(k_board, "built-in board"); }
 
 std::optional<Tool> built_in_tool(std::string_view name) {
   if (name == "pen") return default_pen();
-  if (name == "board") return reference_board();
+  if (name == "board") return reference_body();
   return std::nullopt;
 }
 

@@ -21,7 +21,7 @@ namespace glint {
 [[nodiscard]] Tool default_pen();
 
 // Returns the built-in static reference body of platform/cells/tools/board.toml.
-[[nodiscard]] Tool reference_board();
+[[nodiscard]] Tool reference_body();
 
 // Returns the built-in "pen" or "board"; empty for any other name.
 [[nodiscard]] std::optional<Tool> built_in_tool(std::string_view name);

@@ -37,7 +37,7 @@ std::string listed(const std::vector<int>& markers) {
   return text;
 }
 
-struct Teller {
+struct WarningWriter {
   const ToolSet& tools;
   const std::vector<std::string>& files;
   const DistinctionSettings& settings;
@@ -48,17 +48,17 @@ struct Teller {
            (file == "pen" ? "built in" : file) + ")";
   }
 
-  std::string subject(const Likeness& likeness) const {
-    if (likeness.seen == likeness.other) return "tool " + named(likeness.seen);
-    return "tools " + named(likeness.seen) + " and " + named(likeness.other);
+  std::string subject(const WrongLabeling& labeling) const {
+    if (labeling.seen == labeling.other) return "tool " + named(labeling.seen);
+    return "tools " + named(labeling.seen) + " and " + named(labeling.other);
   }
 
   // Markers count from 1, in the order of their file.
-  static std::string likeness_of(const Likeness& likeness) {
-    const bool own = likeness.seen == likeness.other;
+  static std::string labeling_text(const WrongLabeling& labeling) {
+    const bool own = labeling.seen == labeling.other;
     std::vector<int> from, to;
-    for (std::size_t i = 0; i < likeness.taken_for.size(); ++i) {
-      const int name = likeness.taken_for[i];
+    for (std::size_t i = 0; i < labeling.assignment.size(); ++i) {
+      const int name = labeling.assignment[i];
       if (name < 0 || (own && name == static_cast<int>(i))) continue;
       from.push_back(static_cast<int>(i));
       to.push_back(name);
@@ -67,41 +67,41 @@ struct Teller {
     return "markers " + listed(from) + " of the first lie as " + listed(to) + " of the second";
   }
 
-  std::string consequence(const Likeness& likeness) const {
-    const std::string share = number("%.2g", 100 * wrong_share(likeness.distance_sigmas));
-    return sigmas(likeness.distance_sigmas) + " sigma away at " +
+  std::string consequence(const WrongLabeling& labeling) const {
+    const std::string share = number("%.2g", 100 * error_probability(labeling.distance_sigmas));
+    return sigmas(labeling.distance_sigmas) + " sigma away at " +
            number("%.1f", 1e3 * settings.sigma_m) + " mm of range noise, so that in up to " +
            share + " % of frames the wrong one fits better" +
-           (likeness.search_full ? " (not all labelings were tried)" : "");
+           (labeling.steps_exhausted ? " (not all labelings were tried)" : "");
   }
 
-  std::string next_step(const Likeness& likeness) const {
-    const auto move = move_apart(tools, likeness, settings);
+  std::string next_step(const WrongLabeling& labeling) const {
+    const auto move = separating_move(tools, labeling, settings);
     if (!move) return "";
     return "; e.g. move marker " + std::to_string(move->marker + 1) + " of " + std::string("\"") +
            tool_at(tools, move->tool).name.data() + "\" by " + std::to_string(std::abs(move->mm)) +
            " mm along " + (move->mm < 0 ? "-" : "") + "xyz"[move->axis];
   }
 
-  std::string notice(const Likeness& likeness) const {
-    if (likeness.markers == 0) {
-      return subject(likeness) + ": not all labelings were tried in " +
+  std::string warning(const WrongLabeling& labeling) const {
+    if (labeling.markers == 0) {
+      return subject(labeling) + ": not all labelings were tried in " +
              std::to_string(settings.steps_max) + " steps; not known to be told apart by " +
              sigmas(settings.limit_sigmas) + " sigma; expected tools less alike";
     }
-    const bool refused = likeness.distance_sigmas <= k_refused_sigmas;
-    return subject(likeness) + ": " + likeness_of(likeness) + ", " + consequence(likeness) +
+    const bool refused = labeling.distance_sigmas <= k_refused_sigmas;
+    return subject(labeling) + ": " + labeling_text(labeling) + ", " + consequence(labeling) +
            "; expected " +
            (refused ? "more than " + sigmas(k_refused_sigmas) + ", better " : "at least ") +
-           sigmas(settings.limit_sigmas) + next_step(likeness);
+           sigmas(settings.limit_sigmas) + next_step(labeling);
   }
 };
 
 }  // namespace
 
-std::optional<MarkerMove> move_apart(const ToolSet& tools, const Likeness& likeness,
-                                     const DistinctionSettings& settings) {
-  const int moved = std::max(likeness.seen, likeness.other);
+std::optional<MarkerMove> separating_move(const ToolSet& tools, const WrongLabeling& labeling,
+                                          const DistinctionSettings& settings) {
+  const int moved = std::max(labeling.seen, labeling.other);
   const double wanted_m = settings.limit_sigmas * settings.sigma_m;
   for (int mm = 1; mm <= k_move_max_mm; ++mm) {
     std::optional<MarkerMove> best;
@@ -115,7 +115,7 @@ std::optional<MarkerMove> move_apart(const ToolSet& tools, const Likeness& liken
             return t == moved ? changed : tool_at(tools, t);
           };
           const double left_m2 =
-              squares_left_m2(tool(likeness.seen), tool(likeness.other), likeness.taken_for);
+              residual_squares_m2(tool(labeling.seen), tool(labeling.other), labeling.assignment);
           if (left_m2 < best_m2) continue;
           best_m2 = left_m2;
           best = {moved, marker, axis, shift};
@@ -127,20 +127,20 @@ std::optional<MarkerMove> move_apart(const ToolSet& tools, const Likeness& liken
   return std::nullopt;
 }
 
-std::vector<std::string> tool_notices(const ToolSet& tools, const std::vector<std::string>& files,
-                                      const std::string& place,
-                                      const DistinctionSettings& settings) {
+std::vector<std::string> tool_warnings(const ToolSet& tools, const std::vector<std::string>& files,
+                                       const std::string& place,
+                                       const DistinctionSettings& settings) {
   const Distinction found = distinguish(tools, settings);
-  const Teller teller{tools, files, settings};
-  std::vector<std::string> notices;
-  for (const Likeness& likeness : found.likenesses) {
-    const std::string notice = teller.notice(likeness);
-    if (likeness.markers > 0 && likeness.distance_sigmas <= k_refused_sigmas) {
-      throw InputError(place + ": " + notice);
+  const WarningWriter writer{tools, files, settings};
+  std::vector<std::string> warnings;
+  for (const WrongLabeling& labeling : found.wrong_labelings) {
+    const std::string warning = writer.warning(labeling);
+    if (labeling.markers > 0 && labeling.distance_sigmas <= k_refused_sigmas) {
+      throw InputError(place + ": " + warning);
     }
-    notices.push_back(notice);
+    warnings.push_back(warning);
   }
-  return notices;
+  return warnings;
 }
 
 }  // namespace glint

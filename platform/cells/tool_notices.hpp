@@ -18,15 +18,16 @@ struct MarkerMove {
   int tool = 0, marker = 0, axis = 0;
   int mm = 0;  // negative: against the axis
 };
-[[nodiscard]] std::optional<MarkerMove> move_apart(const ToolSet& tools, const Likeness& likeness,
-                                                   const DistinctionSettings& settings);
+[[nodiscard]] std::optional<MarkerMove> separating_move(const ToolSet& tools,
+                                                        const WrongLabeling& labeling,
+                                                        const DistinctionSettings& settings);
 
 // Returns one line per pair of confusable tools, or per tool with its own exchange; none if all are
 // at least limit_sigmas apart. files: as the cell names them. place: file:line of the cell. Throws
 // InputError if a wrong labeling is within k_refused_sigmas.
-[[nodiscard]] std::vector<std::string> tool_notices(const ToolSet& tools,
-                                                    const std::vector<std::string>& files,
-                                                    const std::string& place,
-                                                    const DistinctionSettings& settings = {});
+[[nodiscard]] std::vector<std::string> tool_warnings(const ToolSet& tools,
+                                                     const std::vector<std::string>& files,
+                                                     const std::string& place,
+                                                     const DistinctionSettings& settings = {});
 
 }  // namespace glint

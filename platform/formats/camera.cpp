@@ -75,7 +75,7 @@ Camera hololens2_ahat() {
 namespace {
 
 // Without lens and threshold: none is published that holds for another device.
-Camera bare_camera(std::string name, int width, int height, DepthKind depth) {
+Camera camera_without_lens(std::string name, int width, int height, DepthKind depth) {
   Camera camera;
   camera.name = std::move(name);
   camera.model.width = width;
@@ -90,7 +90,7 @@ Camera bare_camera(std::string name, int width, int height, DepthKind depth) {
 }
 
 Camera hololens2_long_throw() {
-  Camera camera = bare_camera("hololens2_long_throw", 320, 288, DepthKind::radial);
+  Camera camera = camera_without_lens("hololens2_long_throw", 320, 288, DepthKind::radial);
   camera.period = milliseconds(200);
   camera.depth.invalid_from = 0xFFFF;  // the recorders write 0
   return camera;
@@ -99,7 +99,7 @@ Camera hololens2_long_throw() {
 // Source: Microsoft, Azure Kinect DK hardware specifications: exposure 12.8 ms, operating range;
 // wide unbinned: 20.3 ms and 15 frames/s.
 Camera azure_kinect(std::string name, int width, int height, double from_m, double to_m) {
-  Camera camera = bare_camera(std::move(name), width, height, DepthKind::z);
+  Camera camera = camera_without_lens(std::move(name), width, height, DepthKind::z);
   camera.exposure = microseconds(12'800);
   camera.range_min_m = from_m;
   camera.range_max_m = to_m;
@@ -116,7 +116,7 @@ Camera azure_kinect_wfov() {
 // Short range: radial depth (ml_depth_camera.h), 0.2 to 0.9 m. The headset stores floats in metres;
 // here depth has 16 bits in millimetres.
 Camera magic_leap2() {
-  Camera camera = bare_camera("magic_leap2", 544, 480, DepthKind::radial);
+  Camera camera = camera_without_lens("magic_leap2", 544, 480, DepthKind::radial);
   camera.period = Duration{16'666'667};
   camera.range_min_m = 0.2;
   camera.range_max_m = 0.9;
@@ -132,7 +132,7 @@ std::vector<Camera> all_cameras() {
           azure_kinect_wfov(),
           azure_kinect("azure_kinect_nfov", 640, 576, 0.5, 3.86),
           magic_leap2(),
-          bare_camera("generic", 0, 0, DepthKind::z)};
+          camera_without_lens("generic", 0, 0, DepthKind::z)};
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr int k_side = 512;
 constexpr std::size_t k_pixels = std::size_t{k_side} * k_side;
 
 // The frame published with analogdevicesinc/ToF (dcd0bed): its two planes are misaligned.
-constexpr int k_adi_brightness_shift = 32;
+constexpr int k_adi_brightness_offset_px = 32;
 constexpr std::size_t k_adi_pixel_bytes = 5;
 
 std::string read_exactly(const std::string& path, std::size_t expected, const std::string& what) {
@@ -48,8 +48,8 @@ FrameBuffer load_adi(const std::string& path) {
     for (std::size_t x = 0; x < k_side; ++x) {
       const std::size_t pixel = y * k_side + x;
       buffer.depth[pixel] = little_endian(bytes, pixel * k_adi_pixel_bytes);
-      if (x + k_adi_brightness_shift >= k_side) continue;
-      const std::size_t shifted = (pixel + k_adi_brightness_shift) * k_adi_pixel_bytes;
+      if (x + k_adi_brightness_offset_px >= k_side) continue;
+      const std::size_t shifted = (pixel + k_adi_brightness_offset_px) * k_adi_pixel_bytes;
       buffer.reflectivity_16[pixel] = little_endian(bytes, shifted + 3);
     }
   }
@@ -79,8 +79,8 @@ FrameBuffer load_pgm_pair(const std::string& path) {
   const std::string name = ends_with(path, ending) ? path.substr(0, path.size() - ending.size())
                                                    : path.substr(0, path.size() - 4);
   const PgmLimits limits{k_width_max, k_height_max, 16};
-  Picture depth = read_pgm(name + ".pgm", limits);
-  Picture brightness = read_pgm(name + ending, limits);
+  Image depth = read_pgm(name + ".pgm", limits);
+  Image brightness = read_pgm(name + ending, limits);
   if (depth.width != brightness.width || depth.height != brightness.height) {
     throw InputError(name + ending + ": " + std::to_string(brightness.width) + " x " +
                      std::to_string(brightness.height) + "; expected " +

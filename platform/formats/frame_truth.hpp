@@ -9,7 +9,7 @@
 
 namespace glint {
 
-struct FrameTruth {
+struct FrameGroundTruth {
   Time mid_exposure;  // the true time; the stamp may differ
   Pose T_world_camera;
   std::vector<Pose> T_world_tool;

@@ -47,30 +47,30 @@ struct Reader {
 
 }  // namespace
 
-void check_picture_size(const std::string& path, std::size_t place, std::uint64_t width,
-                        std::uint64_t height) {
-  if (width <= k_picture_side_max && height <= k_picture_side_max && width * height <= k_pixels_max)
+void check_image_size(const std::string& path, std::size_t place, std::uint64_t width,
+                      std::uint64_t height) {
+  if (width <= k_image_side_max && height <= k_image_side_max && width * height <= k_pixels_max)
     return;
   throw InputError(path + ":byte " + std::to_string(place) + ": " + std::to_string(width) + " x " +
                    std::to_string(height) + " pixels; expected at most " +
-                   std::to_string(k_picture_side_max) + " a side and " +
+                   std::to_string(k_image_side_max) + " a side and " +
                    std::to_string(k_pixels_max) + " in all");
 }
 
-Picture read_pgm(const std::string& path, const PgmLimits& limits) {
+Image read_pgm(const std::string& path, const PgmLimits& limits) {
   return pgm_of(read_file(path, k_pgm_bytes_max, "a binary PGM picture"), path, limits);
 }
 
-Picture pgm_of(std::string_view bytes, const std::string& path, const PgmLimits& limits) {
+Image pgm_of(std::string_view bytes, const std::string& path, const PgmLimits& limits) {
   if (bytes.compare(0, 2, "P5") != 0) {
     throw InputError(path + ":byte 0: does not begin with P5; expected a binary PGM picture");
   }
   Reader reader{path, bytes};
-  Picture out;
+  Image out;
   out.width = reader.number("a width", 1, limits.width);
   out.height = reader.number("a height", 1, limits.height);
-  check_picture_size(path, reader.at, static_cast<std::uint64_t>(out.width),
-                     static_cast<std::uint64_t>(out.height));
+  check_image_size(path, reader.at, static_cast<std::uint64_t>(out.width),
+                   static_cast<std::uint64_t>(out.height));
   const bool deep = limits.bits_min > 8;
   out.bits = reader.number(deep ? "a maxval for 16 bits" : "a maxval", deep ? 256 : 1, 65535) > 255
                  ? 16

@@ -37,7 +37,7 @@ int format_of(const spng_ihdr& header) {
 }
 
 // Converts `bytes` of the decoded image, in native byte order, to the image's channels.
-void fill(Picture& picture, const std::vector<std::uint8_t>& bytes) {
+void fill(Image& picture, const std::vector<std::uint8_t>& bytes) {
   const std::size_t stored = picture.channels == 1 ? 1 : 4;
   const std::size_t size = picture.bits == 16 ? 2 : 1;
   const std::size_t pixels = bytes.size() / (stored * size);
@@ -54,18 +54,18 @@ void fill(Picture& picture, const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-Picture read_png(const std::string& path, const std::string& expected) {
+Image read_png(const std::string& path, const std::string& expected) {
   return png_of(read_file(path, k_png_bytes_max, expected), path, expected);
 }
 
-Picture png_of(std::string_view file, const std::string& path, const std::string& expected,
-               bool transparency) {
+Image png_of(std::string_view file, const std::string& path, const std::string& expected,
+             bool transparency) {
   const auto fail = [&](const std::string& found) {
     throw InputError(path + ": " + found + "; expected " + expected);
   };
   if (file.size() < k_height_at + 4 || !file.starts_with(k_signature)) fail("no picture");
-  check_picture_size(path, k_width_at, big_endian(file.data() + k_width_at),
-                     big_endian(file.data() + k_height_at));
+  check_image_size(path, k_width_at, big_endian(file.data() + k_width_at),
+                   big_endian(file.data() + k_height_at));
 
   const Context context(spng_ctx_new(0), spng_ctx_free);
   spng_ihdr header{};
@@ -86,18 +86,18 @@ Picture png_of(std::string_view file, const std::string& path, const std::string
   std::vector<std::uint8_t> bytes(size);
   error = spng_decode_image(context.get(), bytes.data(), bytes.size(), format, 0);
   if (error != 0) fail(std::string("no whole picture: ") + spng_strerror(error));
-  Picture picture{static_cast<int>(header.width),
-                  static_cast<int>(header.height),
-                  grey           ? 1
-                  : transparency ? 4
-                                 : 3,
-                  header.bit_depth == 16 ? 16 : 8,
-                  {}};
+  Image picture{static_cast<int>(header.width),
+                static_cast<int>(header.height),
+                grey           ? 1
+                : transparency ? 4
+                               : 3,
+                header.bit_depth == 16 ? 16 : 8,
+                {}};
   fill(picture, bytes);
   return picture;
 }
 
-Picture read_picture(const std::string& path) {
+Image read_image_file(const std::string& path) {
   const std::string expected = "a PNG or PGM picture";
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be read; expected " + expected);
@@ -124,7 +124,7 @@ void write_png(const std::string& path, int width, int height, int channels,
       error == 0 ? spng_get_png_buffer(context.get(), &length, &error) : nullptr, std::free);
   if (error != 0) throw InputError(path + ": no picture: " + spng_strerror(error));
   const std::string reason =
-      write_whole_file(path, std::string_view(static_cast<const char*>(png.get()), length));
+      write_file_atomically(path, std::string_view(static_cast<const char*>(png.get()), length));
   if (!reason.empty()) {
     throw InputError(path + ": cannot be written: " + reason + "; expected " + expected);
   }

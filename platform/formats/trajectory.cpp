@@ -74,9 +74,9 @@ class Line {
   int column_ = 0;
 };
 
-StampedPose parse(std::string_view text, const std::string& where, bool commas) {
+TimedPose parse(std::string_view text, const std::string& where, bool commas) {
   Line line(text, where, commas);
-  StampedPose sample;
+  TimedPose sample;
   sample.time = Time{line.stamp()};
   for (int axis = 0; axis < 3; ++axis) {
     sample.pose.translation[axis] = line.number();
@@ -102,7 +102,7 @@ Time mirrored(Time time, Duration length) {
 }
 
 // Slope at `here` of the parabola through three samples.
-Vector3 slope(const StampedPose& before, const StampedPose& here, const StampedPose& after) {
+Vector3 slope(const TimedPose& before, const TimedPose& here, const TimedPose& after) {
   const double left = (here.time - before.time).seconds();
   const double right = (after.time - here.time).seconds();
   const Vector3 first = (here.pose.translation - before.pose.translation) / left;
@@ -126,7 +126,7 @@ Trajectory trajectory_from_text(const std::string& text, const std::string& name
     if (content == std::string_view::npos || line[content] == '#') continue;
     const std::string where = name + ":" + std::to_string(number);
     if (trajectory.samples.empty()) commas = line.find(',') != std::string_view::npos;
-    StampedPose sample = parse(line, where, commas);
+    TimedPose sample = parse(line, where, commas);
     if (trajectory.samples.empty()) trajectory.begin = sample.time;
     sample.time.nanoseconds -= trajectory.begin.nanoseconds;
     if (!trajectory.samples.empty() && sample.time <= trajectory.samples.back().time) {
@@ -149,15 +149,15 @@ Trajectory load_trajectory(const std::string& path) {
 }
 
 Pose interpolated(const Trajectory& trajectory, Time time) {
-  const std::vector<StampedPose>& samples = trajectory.samples;
+  const std::vector<TimedPose>& samples = trajectory.samples;
   const Time inside = mirrored(time, trajectory.length());
   std::size_t low = 0, high = samples.size() - 1;  // samples[low] <= inside <= samples[high]
   while (high - low > 1) {
     const std::size_t middle = low + (high - low) / 2;
     (samples[middle].time <= inside ? low : high) = middle;
   }
-  const StampedPose& a = samples[low];
-  const StampedPose& b = samples[high];
+  const TimedPose& a = samples[low];
+  const TimedPose& b = samples[high];
   const Duration span = b.time - a.time;
   Pose pose = interpolate(a, b, inside);
   if (span > k_gap || low == 0 || high + 1 == samples.size()) return pose;

@@ -9,9 +9,9 @@
 namespace glint {
 
 struct Trajectory {
-  std::string name;                  // the file, for messages
-  std::vector<StampedPose> samples;  // rising stamps, from 0
-  Time begin;                        // the first stamp, as in the file
+  std::string name;                // the file, for messages
+  std::vector<TimedPose> samples;  // rising stamps, from 0
+  Time begin;                      // the first stamp, as in the file
 
   [[nodiscard]] Duration length() const {
     return samples.empty() ? Duration{} : samples.back().time - samples.front().time;

@@ -54,7 +54,7 @@ class BoardMotion final : public Motion {
 ChessboardDrawer::ChessboardDrawer(const CameraModel& model, const DeviceErrors& device)
     : width_(model.width), height_(model.height) {
   DeviceErrors lens = device;
-  lens.slow_range_m = lens.slow_centroid_px = 0;
+  lens.correlated_range_m = lens.correlated_centroid_px = 0;
   const Vector2 middle(model.cx, model.cy);
   const auto shift = [&](const Vector2& pixel) {
     return device.exists ? marker_error(lens, pixel, middle, 0, 0, Time{}).shift_px : Vector2(0, 0);
@@ -105,8 +105,8 @@ void ChessboardDrawer::draw(const Chessboard& board, const Pose& T_camera_board,
   }
 }
 
-MotionPointer board_motion(const Pose& T_world_camera, const Chessboard& board,
-                           std::uint64_t seed) {
+MotionPointer target_motion(const Pose& T_world_camera, const Chessboard& board,
+                            std::uint64_t seed) {
   return std::make_shared<BoardMotion>(T_world_camera, board, seed);
 }
 

@@ -34,7 +34,7 @@ class ChessboardDrawer {
 };
 
 // Motion over the complete field of view, at near and far range, with tilts in all directions.
-[[nodiscard]] MotionPointer board_motion(const Pose& T_world_camera, const Chessboard& board,
-                                         std::uint64_t seed);
+[[nodiscard]] MotionPointer target_motion(const Pose& T_world_camera, const Chessboard& board,
+                                          std::uint64_t seed);
 
 }  // namespace glint::sim

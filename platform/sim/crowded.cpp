@@ -51,7 +51,7 @@ Tool drawn_tool(int number, std::uint64_t seed) {
 }
 
 // Camera frame: x right, y down, z ahead.
-Vector3 crowded_place(int tool) {
+Vector3 crowded_position(int tool) {
   static constexpr int order[] = {0, 1, -1, 2};  // in units of the pitch
   return Vector3((order[tool % 4] - 0.5) * k_pitch_m, (order[tool / 4] - 0.5) * k_pitch_m,
                  k_distance_m);
@@ -85,7 +85,7 @@ Scenario crowded_run(const ToolSet& tools, int strays, std::uint64_t seed) {
   for (int t = 0; t < tools.count; ++t) {
     ToolBody body;
     body.tool = tools.items[static_cast<std::size_t>(t)];
-    body.motion = fixed_motion(T_world_camera * Pose{Quaternion::Identity(), crowded_place(t)});
+    body.motion = fixed_motion(T_world_camera * Pose{Quaternion::Identity(), crowded_position(t)});
     scenario.tools.push_back(std::move(body));
   }
   for (int i = 0; i < std::clamp(strays, 0, k_strays_max); ++i) {

@@ -8,7 +8,7 @@
 namespace glint::sim {
 namespace {
 
-constexpr double k_turn = 2 * std::numbers::pi;
+constexpr double k_two_pi = 2 * std::numbers::pi;
 constexpr int k_oscillations = 6;
 constexpr int k_lens_waves = 4;
 constexpr double k_lens_wave_px = 350;  // mean wavelength
@@ -24,7 +24,7 @@ double slow_error(const RandomKey& key, std::uint64_t part, double seconds) {
     const std::uint64_t index = 2 * (part * k_oscillations + k);
     const double share = (static_cast<double>(k) + uniform(key, index)) / k_oscillations;
     const double hz = k_slowest_hz * exponential(span * share);
-    sum += sine(k_turn * (hz * seconds + uniform(key, index + 1)));
+    sum += sine(k_two_pi * (hz * seconds + uniform(key, index + 1)));
   }
   return sum * std::sqrt(2.0 / k_oscillations);
 }
@@ -36,7 +36,7 @@ double lens_field(const RandomKey& key, std::uint64_t axis, const Vector2& pixel
     const std::uint64_t index = axis * k_lens_waves + k;
     const Vector3 wave = gaussian_vector(key, 2 * index);
     const double turns = (wave.x() * pixel.x() + wave.y() * pixel.y()) / k_lens_wave_px;
-    sum += sine(k_turn * (turns + uniform(key, 1'000'000 + index)));
+    sum += sine(k_two_pi * (turns + uniform(key, 1'000'000 + index)));
   }
   return sum * std::sqrt(2.0 / k_lens_waves);
 }
@@ -55,17 +55,17 @@ MarkerError marker_error(const DeviceErrors& device, const Vector2& pixel,
     error.shift_px += device.lens_residual_px *
                       Vector2(lens_field(of_lens, 0, pixel), lens_field(of_lens, 1, pixel));
   }
-  if (device.slow_centroid_px > 0) {
-    error.shift_px += device.slow_centroid_px *
+  if (device.correlated_centroid_px > 0) {
+    error.shift_px += device.correlated_centroid_px *
                       Vector2(slow_error(of_marker, 0, seconds), slow_error(of_marker, 1, seconds));
   }
   error.range_m = device.range_offset_m + device.range_scale * range_m;
   if (device.range_wiggle_m > 0) {
     const double phase = uniform(of_lens, 2'000'000);
-    error.range_m += device.range_wiggle_m * sine(k_turn * (range_m / k_wiggle_period_m + phase));
+    error.range_m += device.range_wiggle_m * sine(k_two_pi * (range_m / k_wiggle_period_m + phase));
   }
-  if (device.slow_range_m > 0) {
-    error.range_m += device.slow_range_m * slow_error(of_marker, 2, seconds);
+  if (device.correlated_range_m > 0) {
+    error.range_m += device.correlated_range_m * slow_error(of_marker, 2, seconds);
   }
   return error;
 }

@@ -24,7 +24,7 @@ struct DeviceErrors {
   double range_scale = 0;
   double range_wiggle_m = 0;  // amplitude; one period each k_wiggle_period_m of range
   // Of each marker, rms: a sum of slow oscillations, k_slowest_hz to k_fastest_hz.
-  double slow_range_m = 0, slow_centroid_px = 0;
+  double correlated_range_m = 0, correlated_centroid_px = 0;
   std::uint64_t seed = 0;
 };
 inline constexpr double k_wiggle_period_m = 0.26;  // a quarter of AHAT's wrap

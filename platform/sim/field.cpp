@@ -52,8 +52,8 @@ DeviceErrors device(Draws& draws, std::uint64_t seed) {
   errors.focal_scale = shipped.focal_scale * draws.normal();
   errors.range_offset_m = shipped.range_offset_m * draws.normal();
   errors.range_scale = shipped.range_scale * draws.normal();
-  errors.slow_range_m = shipped.slow_range_m;
-  errors.slow_centroid_px = shipped.slow_centroid_px;
+  errors.correlated_range_m = shipped.correlated_range_m;
+  errors.correlated_centroid_px = shipped.correlated_centroid_px;
   errors.lens_residual_px = k_lens_residual_px;
   errors.range_wiggle_m = k_wiggle_m;
   errors.seed = seed;
@@ -69,14 +69,14 @@ void build_inexactly(Draws& draws, ToolBody& body) {
   const Vector3 drawn_tip_m = tool.tip_m;
   tool.tip_m += Tool{}.tip_sigma_m * draws.vector();
   tool.marker_radius_m += k_radius_sigma_m * draws.normal();
-  put_tip_at(drawn_tip_m, Quaternion::Identity(), body);
+  align_to_stated_frame(drawn_tip_m, Quaternion::Identity(), body);
 }
 
 void add_events(Draws& draws, double duration_s, Scenario& scenario) {
   const auto begin = [&](double length_s) { return draws.between(1, duration_s - length_s); };
   scenario.timing.slow.push_back(interval(begin(4), 4));
   scenario.occlusions.push_back({interval(begin(1), 1), 0, 0.09, 0.6});
-  scenario.aways.push_back({interval(begin(3), 3), 0, Vector3(0, 0, -1.2), k_lay_down_s});
+  scenario.absences.push_back({interval(begin(3), 3), 0, Vector3(0, 0, -1.2), k_lay_down_s});
 }
 
 HandSettings calibrating_hand(FieldTask task) {
@@ -84,8 +84,8 @@ HandSettings calibrating_hand(FieldTask task) {
   hand.rest_fraction = 0.05;
   hand.slowest_hz = 0.05;
   hand.fastest_hz = 0.5;
-  hand.turn_rms_rad = 0.3;
-  hand.stroke_rms_m = task == FieldTask::turn ? 0.1 : 0;
+  hand.rotation_rms_rad = 0.3;
+  hand.stroke_rms_m = task == FieldTask::rotate ? 0.1 : 0;
   return hand;
 }
 
@@ -93,16 +93,17 @@ HandSettings calibrating_hand(FieldTask task) {
 void prepare(FieldTask task, std::uint64_t seed, Scenario& scenario) {
   const Time begin;
   scenario.clutter.clear();
-  if (task != FieldTask::look) scenario.head = fixed_motion(scenario.head->pose(begin));
+  if (task != FieldTask::move_head) scenario.head = fixed_motion(scenario.head->pose(begin));
   ToolBody& body = scenario.tools.front();
   const Pose T_world_tool = body.motion->pose(begin);
-  if (task == FieldTask::board) {
+  if (task == FieldTask::target) {
     body.motion = fixed_motion({T_world_tool.rotation, k_put_away_m});
-    scenario.board = Chessboard{};
-    scenario.board->motion = board_motion(scenario.head->pose(begin), *scenario.board, seed);
+    scenario.calibration_target = Chessboard{};
+    scenario.calibration_target->motion =
+        target_motion(scenario.head->pose(begin), *scenario.calibration_target, seed);
     return;
   }
-  if (task == FieldTask::rest || task == FieldTask::look) {
+  if (task == FieldTask::still || task == FieldTask::move_head) {
     body.motion = fixed_motion(T_world_tool);
     return;
   }
@@ -123,13 +124,13 @@ Scenario field_run(const Camera& camera, const std::vector<Tool>& tools,
   for (ToolBody& body : scenario.tools) build_inexactly(draws, body);
   const double drift = exponential(draws.between(-1, 1) * logarithm(k_drift_factor_max));
   LocalisationSettings& head = scenario.localisation;
-  for (double* part :
-       {&head.rest_position_m, &head.rest_angle_rad, &head.position_per_speed_s,
-        &head.position_per_turn_m, &head.angle_per_speed_s_m, &head.angle_per_turn_s}) {
+  for (double* part : {&head.rest_position_m, &head.rest_angle_rad, &head.position_per_speed_s,
+                       &head.position_per_angular_speed_m, &head.angle_per_speed_s_m,
+                       &head.angle_per_angular_speed_s}) {
     *part *= drift;
   }
   head.latency_s = k_head_sigma_s * draws.normal();
-  scenario.timing.stamp_offset = seconds_long(CameraUncertainty{}.stamp_s * draws.normal());
+  scenario.timing.stamp_offset = seconds_long(CameraUncertainty{}.time_stamp_s * draws.normal());
   // The robot stands where the cell states; the headset's world lies beside that.
   const Vector3 turn = robot.sigma_rad * draws.vector();
   const Pose off{from_rotation_vector(turn), robot.sigma_m * draws.vector()};

@@ -21,12 +21,12 @@ struct RobotPlacement {
 
 // Activity of the user.
 enum class FieldTask {
-  work,   // draws
-  board,  // shows a chessboard: calibrate camera
-  turn,   // rotates the tool in all directions, near and far: calibrate depth and tool
-  pivot,  // tilts it in all directions with the tip in a dent: calibrate pivot
-  rest,   // keeps it static: calibrate noise
-  look    // and moves the head around it: calibrate headset
+  work,      // draws
+  target,    // shows a chessboard: calibrate camera
+  rotate,    // rotates the tool in all directions, near and far: calibrate depth and tool
+  pivot,     // tilts it in all directions with the tip in a dent: calibrate pivot
+  still,     // keeps it static: calibrate noise
+  move_head  // and moves the head around it: calibrate headset
 };
 
 // work: a hand alternates between rest and strokes; clutter; at times given by the random seed: a

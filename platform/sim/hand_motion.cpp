@@ -15,9 +15,9 @@ constexpr std::size_t k_waves = 5;
 
 // Three axes, each a sum of sines with amplitude inversely proportional to frequency, as for a
 // hand.
-class Wander {
+class SumOfSines {
  public:
-  Wander(const RandomKey& key, double rms, double slowest_hz, double fastest_hz) {
+  SumOfSines(const RandomKey& key, double rms, double slowest_hz, double fastest_hz) {
     const double octaves = logarithm(fastest_hz / slowest_hz);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double power = 0;
@@ -59,8 +59,8 @@ class HandMotion final : public Motion {
       : settings_(settings),
         strokes_({seed, Stream::hand, 2 * instance}, settings.stroke_rms_m, settings.slowest_hz,
                  settings.fastest_hz),
-        turns_({seed, Stream::hand, 2 * instance + 1}, settings.turn_rms_rad, settings.slowest_hz,
-               settings.fastest_hz),
+        turns_({seed, Stream::hand, 2 * instance + 1}, settings.rotation_rms_rad,
+               settings.slowest_hz, settings.fastest_hz),
         tremor_({seed, Stream::tremor, 2 * instance}, settings.tremor_rms_m,
                 0.8 * settings.tremor_hz, 1.2 * settings.tremor_hz),
         tremor_turns_({seed, Stream::tremor, 2 * instance + 1}, settings.tremor_rms_rad,
@@ -91,7 +91,7 @@ class HandMotion final : public Motion {
   }
 
   HandSettings settings_;
-  Wander strokes_, turns_, tremor_, tremor_turns_;
+  SumOfSines strokes_, turns_, tremor_, tremor_turns_;
 };
 
 class HeadMotion final : public Motion {
@@ -113,7 +113,7 @@ class HeadMotion final : public Motion {
 
  private:
   HeadSettings settings_;
-  Wander sway_, gaze_;
+  SumOfSines sway_, gaze_;
 };
 
 }  // namespace

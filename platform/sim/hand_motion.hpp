@@ -17,7 +17,7 @@ struct HandSettings {
   double cycle_s = 12;               // a rest, then strokes
   double rest_fraction = 0.2;        // of the cycle; 1: always at rest
   double stroke_rms_m = 0.035;       // per axis
-  double turn_rms_rad = 0.16;        // per axis
+  double rotation_rms_rad = 0.16;    // per axis
   double slowest_hz = 0.15, fastest_hz = 1.8;
   double tremor_rms_m = 0.00005;  // per axis
   double tremor_rms_rad = 0.0005;

@@ -14,17 +14,19 @@ constexpr double k_step_s = k_localisation_step.seconds();
 
 // First-order Gauss-Markov process: stationary standard deviation 1, correlation exp(-dt / time)
 // between steps.
-struct ReturningWalk {
+struct GaussMarkov {
   RandomKey key;
-  double keep = 0, renew = 1;
+  double decay = 0, innovation = 1;
   Vector3 value = Vector3::Zero();
 
-  ReturningWalk(const RandomKey& random, double correlation_s) : key(random) {
-    keep = correlation_s > 0 ? exponential(-k_step_s / correlation_s) : 0;
-    renew = std::sqrt(1 - keep * keep);
+  GaussMarkov(const RandomKey& random, double correlation_s) : key(random) {
+    decay = correlation_s > 0 ? exponential(-k_step_s / correlation_s) : 0;
+    innovation = std::sqrt(1 - decay * decay);
     value = gaussian_vector(key, 0);
   }
-  void step(std::uint64_t index) { value = keep * value + renew * gaussian_vector(key, index); }
+  void step(std::uint64_t index) {
+    value = decay * value + innovation * gaussian_vector(key, index);
+  }
 };
 
 }  // namespace
@@ -35,20 +37,20 @@ Localisation::Localisation(const LocalisationSettings& settings, MotionPointer c
   const auto key = [seed](std::uint64_t walk) {
     return RandomKey{seed, Stream::localisation, walk};
   };
-  ReturningWalk rest_position(key(0), settings.rest_correlation_s);
-  ReturningWalk rest_angle(key(1), settings.rest_correlation_s);
-  ReturningWalk moving_position(key(2), settings.motion_correlation_s);
-  ReturningWalk moving_angle(key(3), settings.motion_correlation_s);
+  GaussMarkov rest_position(key(0), settings.rest_correlation_s);
+  GaussMarkov rest_angle(key(1), settings.rest_correlation_s);
+  GaussMarkov moving_position(key(2), settings.motion_correlation_s);
+  GaussMarkov moving_angle(key(3), settings.motion_correlation_s);
   const double follow = settings.motion_correlation_s > 0
                             ? 1 - exponential(-k_step_s / settings.motion_correlation_s)
                             : 1;
   double speed = 0, turn = 0;
   const std::int64_t steps = duration.nanoseconds / k_localisation_step.nanoseconds + 2;
-  StampedPose before{Time{}, camera_->pose(Time{})};
+  TimedPose before{Time{}, camera_->pose(Time{})};
   for (std::int64_t i = 0; i < steps; ++i) {
     const auto index = static_cast<std::uint64_t>(i) + 1;
     const Time now{i * k_localisation_step.nanoseconds};
-    const StampedPose here{now, camera_->pose(now)};
+    const TimedPose here{now, camera_->pose(now)};
     const Velocity velocity = velocity_between(before, here);
     before = here;
     speed += follow * (velocity.linear_m_s.norm() - speed);
@@ -58,9 +60,9 @@ Localisation::Localisation(const LocalisationSettings& settings, MotionPointer c
     moving_position.step(index);
     moving_angle.step(index);
     const double position_scale =
-        settings.position_per_speed_s * speed + settings.position_per_turn_m * turn;
+        settings.position_per_speed_s * speed + settings.position_per_angular_speed_m * turn;
     const double angle_scale =
-        settings.angle_per_speed_s_m * speed + settings.angle_per_turn_s * turn;
+        settings.angle_per_speed_s_m * speed + settings.angle_per_angular_speed_s * turn;
     Error error;
     error.position = settings.rest_position_m * rest_position.value +
                      position_scale * (moving_position.value + settings.motion_position_bias);

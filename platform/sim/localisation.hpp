@@ -23,10 +23,10 @@ struct LocalisationSettings {
   double rest_angle_rad = 0.002;   // per axis
   double rest_correlation_s = 20;
 
-  double position_per_speed_s = 0.03;  // m of error per m/s
-  double position_per_turn_m = 0.01;   // m of error per rad/s
-  double angle_per_speed_s_m = 0.02;   // rad of error per m/s
-  double angle_per_turn_s = 0.02;      // rad of error per rad/s
+  double position_per_speed_s = 0.03;          // m of error per m/s
+  double position_per_angular_speed_m = 0.01;  // m of error per rad/s
+  double angle_per_speed_s_m = 0.02;           // rad of error per m/s
+  double angle_per_angular_speed_s = 0.02;     // rad of error per rad/s
   double motion_correlation_s = 0.4;
 
   Vector3 motion_position_bias = Vector3::Zero();  // added to the random part, same units:

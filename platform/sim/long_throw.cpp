@@ -35,14 +35,15 @@ std::vector<float> robot_depth(const PosedSurface& robot, const Pose& T_camera_r
 
 }  // namespace
 
-LongThrow::LongThrow(const sim::Simulator& simulator, PosedSurface robot, const Pose& T_world_robot)
+MappingCamera::MappingCamera(const sim::Simulator& simulator, PosedSurface robot,
+                             const Pose& T_world_robot)
     : simulator_(simulator),
       robot_(std::move(robot)),
       T_world_robot_(T_world_robot),
       rays_(camera_model()),
       room_(camera_model()) {}
 
-void LongThrow::draw_room(const sim::SimFrame& frame, sim::Planes& planes) const {
+void MappingCamera::draw_room(const sim::SimFrame& frame, sim::Planes& planes) const {
   const sim::Scenario& scenario = simulator_.scenario();
   planes.resize(k_long_throw.width, k_long_throw.height);
   room_.draw(scenario.room, frame.truth.T_world_camera, scenario.signal.wall, planes);
@@ -53,7 +54,7 @@ void LongThrow::draw_room(const sim::SimFrame& frame, sim::Planes& planes) const
   }
 }
 
-std::vector<float> LongThrow::depth(int i, sim::SimFrame& frame) {
+std::vector<float> MappingCamera::depth(int i, sim::SimFrame& frame) {
   simulator_.describe(i, frame);
   sim::Planes planes;
   draw_room(frame, planes);

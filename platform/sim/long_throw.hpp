@@ -22,10 +22,10 @@ namespace glint {
 inline constexpr Pinhole k_long_throw{80, 72, 50, 50, 40, 36};
 inline constexpr double k_long_throw_sigma_m = 0.002;
 
-class LongThrow {
+class MappingCamera {
  public:
   // Triangles of the robot are in its base frame. The simulator must outlive this object.
-  LongThrow(const sim::Simulator& simulator, PosedSurface robot, const Pose& T_world_robot);
+  MappingCamera(const sim::Simulator& simulator, PosedSurface robot, const Pose& T_world_robot);
 
   // Returns the depth of the simulator's frame `i` at its true mid-exposure: metres, row by row.
   // `frame` receives the description of that frame, with the head pose estimated by the headset.

@@ -10,22 +10,22 @@ struct PixelBox {
   int x0 = 1 << 20, y0 = 1 << 20, x1 = 0, y1 = 0;  // empty
 
   void add(const Vector2& pixel, double reach) {
-    x0 = lesser(x0, whole(pixel.x() - reach));
-    y0 = lesser(y0, whole(pixel.y() - reach));
-    x1 = greater(x1, whole(pixel.x() + reach) + 1);
-    y1 = greater(y1, whole(pixel.y() + reach) + 1);
+    x0 = min_of(x0, floor_to_int(pixel.x() - reach));
+    y0 = min_of(y0, floor_to_int(pixel.y() - reach));
+    x1 = max_of(x1, floor_to_int(pixel.x() + reach) + 1);
+    y1 = max_of(y1, floor_to_int(pixel.y() + reach) + 1);
   }
   void clip(int width, int height) {
-    x0 = greater(x0, 0);
-    y0 = greater(y0, 0);
-    x1 = lesser(x1, width);
-    y1 = lesser(y1, height);
+    x0 = max_of(x0, 0);
+    y0 = max_of(y0, 0);
+    x1 = min_of(x1, width);
+    y1 = min_of(y1, height);
   }
 
  private:
-  static int lesser(int a, int b) { return a < b ? a : b; }
-  static int greater(int a, int b) { return a > b ? a : b; }
-  static int whole(double x) {
+  static int min_of(int a, int b) { return a < b ? a : b; }
+  static int max_of(int a, int b) { return a > b ? a : b; }
+  static int floor_to_int(double x) {
     const double limited = x < -1e6 ? -1e6 : x > 1e6 ? 1e6 : x;
     return static_cast<int>(limited + 1e6) - 1'000'000;
   }

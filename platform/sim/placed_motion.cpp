@@ -12,7 +12,7 @@ class PlacedMotion final : public Motion {
     Vector3 low = trajectory_.samples.front().pose.translation, high = low;
     Eigen::Vector4d sum = Eigen::Vector4d::Zero();
     const Eigen::Vector4d first = trajectory_.samples.front().pose.rotation.coeffs();
-    for (const StampedPose& sample : trajectory_.samples) {
+    for (const TimedPose& sample : trajectory_.samples) {
       low = low.cwiseMin(sample.pose.translation);
       high = high.cwiseMax(sample.pose.translation);
       const Eigen::Vector4d q = sample.pose.rotation.coeffs();
@@ -46,7 +46,7 @@ MotionPointer placed_motion(Trajectory trajectory, const Placement& placement) {
 
 double scale_to_half_extent(const Trajectory& trajectory, double half_extent_m) {
   Vector3 low = trajectory.samples.front().pose.translation, high = low;
-  for (const StampedPose& sample : trajectory.samples) {
+  for (const TimedPose& sample : trajectory.samples) {
     low = low.cwiseMin(sample.pose.translation);
     high = high.cwiseMax(sample.pose.translation);
   }

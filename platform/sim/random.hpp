@@ -32,7 +32,7 @@ enum class Stream : std::uint64_t {
   chessboard = 16,
 };
 
-[[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t x) {
+[[nodiscard]] constexpr std::uint64_t splitmix64(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15u;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
@@ -45,8 +45,8 @@ struct RandomKey {
   std::uint64_t instance = 0;  // e.g. index of a tool
 
   [[nodiscard]] constexpr std::uint64_t bits(std::uint64_t index) const {
-    const std::uint64_t key = mixed(mixed(seed) ^ static_cast<std::uint64_t>(stream));
-    return mixed(mixed(key ^ instance) ^ index);
+    const std::uint64_t key = splitmix64(splitmix64(seed) ^ static_cast<std::uint64_t>(stream));
+    return splitmix64(splitmix64(key ^ instance) ^ index);
   }
 };
 

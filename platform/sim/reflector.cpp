@@ -9,7 +9,7 @@
 namespace glint::sim {
 namespace {
 
-constexpr int k_hiders_max = 32;
+constexpr int k_occluders_max = 32;
 constexpr int k_hidden_samples = 4;  // inside, if an occluder may hide it
 
 // Sums over the rays of one pixel.
@@ -79,13 +79,13 @@ class Shape {
   Vector3 centre_;
 };
 
-class Hiders {
+class Occluders {
  public:
-  Hiders(std::span<const Capsule> all, const Reflector& reflector) {
+  Occluders(std::span<const Capsule> all, const Reflector& reflector) {
     for (const Capsule& capsule : all) {
       const double reach = capsule.radius_m + reflector.radius_m + 0.5 * reflector.travel.norm();
       if (axis_distance(capsule, reflector.centre) > reach + 0.002) continue;
-      if (count_ < k_hiders_max) near_[static_cast<std::size_t>(count_++)] = &capsule;
+      if (count_ < k_occluders_max) near_[static_cast<std::size_t>(count_++)] = &capsule;
     }
   }
   [[nodiscard]] bool any() const { return count_ > 0; }
@@ -100,11 +100,11 @@ class Hiders {
   }
 
  private:
-  std::array<const Capsule*, k_hiders_max> near_{};
+  std::array<const Capsule*, k_occluders_max> near_{};
   int count_ = 0;
 };
 
-void add_rays(const Shape& shape, const Hiders& hiders, const Vector3& middle,
+void add_rays(const Shape& shape, const Occluders& occluders, const Vector3& middle,
               const LensRays::Slopes& slopes, int samples, Light& light) {
   const double weight = 1.0 / (samples * samples);
   for (int j = 0; j < samples; ++j) {
@@ -115,7 +115,7 @@ void add_rays(const Shape& shape, const Hiders& hiders, const Vector3& middle,
       const Traced traced = shape.trace(ray);
       if (traced.range <= 0) continue;
       light.rays += weight;
-      if (hiders.hide(ray, traced.range)) continue;
+      if (occluders.hide(ray, traced.range)) continue;
       light.open += weight;
       light.signal += weight * traced.signal;
       light.range += weight * traced.signal * traced.range;
@@ -123,8 +123,8 @@ void add_rays(const Shape& shape, const Hiders& hiders, const Vector3& middle,
   }
 }
 
-Light light_of_pixel(const Reflector& reflector, const Hiders& hiders, const LensRays& rays, int x,
-                     int y, int exposures) {
+Light light_of_pixel(const Reflector& reflector, const Occluders& occluders, const LensRays& rays,
+                     int x, int y, int exposures) {
   Light light;
   const Vector3 middle = rays.ray(x, y);
   const LensRays::Slopes slopes = rays.slopes(x, y);
@@ -135,8 +135,8 @@ Light light_of_pixel(const Reflector& reflector, const Hiders& hiders, const Len
     const Rim rim = shape.rim(middle, pixel_rad);
     if (rim.inside < -rim.footprint) continue;
     const bool edge = rim.inside < rim.footprint;
-    const int samples = edge ? k_edge_samples : hiders.any() ? k_hidden_samples : 1;
-    add_rays(shape, hiders, middle, slopes, samples, light);
+    const int samples = edge ? k_edge_samples : occluders.any() ? k_hidden_samples : 1;
+    add_rays(shape, occluders, middle, slopes, samples, light);
   }
   light.rays /= exposures;
   light.open /= exposures;
@@ -156,9 +156,9 @@ void mix(const Light& light, double range_error, float& signal, float& range) {
 
 }  // namespace
 
-Drawn draw(const Reflector& reflector, const CameraModel& model, const LensRays& rays,
-           std::span<const Capsule> hiders, Planes& planes) {
-  Drawn drawn;
+RenderedReflector draw(const Reflector& reflector, const CameraModel& model, const LensRays& rays,
+                       std::span<const Capsule> occluders, Planes& planes) {
+  RenderedReflector drawn;
   const double range = reflector.centre.norm();
   if (reflector.centre.z() < 0.02 || range < 2 * reflector.radius_m) return drawn;
   const Result<Vector2> centre = project(model, reflector.centre);
@@ -173,17 +173,17 @@ Drawn draw(const Reflector& reflector, const CameraModel& model, const LensRays&
   box.clip(rays.width(), rays.height());
   const double steps = blur_px / k_blur_step_px;
   const int exposures = steps < k_exposures_max - 1 ? static_cast<int>(steps) + 1 : k_exposures_max;
-  const Hiders near(hiders, reflector);
-  double whole = 0, open = 0;
+  const Occluders near(occluders, reflector);
+  double total = 0, open = 0;
   for (int y = box.y0; y < box.y1; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
       if (!rays.has_ray(x, y)) {
         const Vector2 middle(x + 0.5, y + 0.5);
-        if ((middle - drawn.pixel).squaredNorm() < drawn.radius_px * drawn.radius_px) whole += 1;
+        if ((middle - drawn.pixel).squaredNorm() < drawn.radius_px * drawn.radius_px) total += 1;
         continue;
       }
       const Light light = light_of_pixel(reflector, near, rays, x, y, exposures);
-      whole += light.rays;
+      total += light.rays;
       open += light.open;
       if (light.signal <= 0) continue;
       const std::size_t i = planes.at(x, y);
@@ -196,7 +196,7 @@ Drawn draw(const Reflector& reflector, const CameraModel& model, const LensRays&
   const double rim_px = drawn.radius_px;
   const bool inside = drawn.pixel.x() >= rim_px && drawn.pixel.x() <= rays.width() - rim_px &&
                       drawn.pixel.y() >= rim_px && drawn.pixel.y() <= rays.height() - rim_px;
-  drawn.open_share = inside && whole > 0 ? open / whole : 0;
+  drawn.visible_fraction = inside && total > 0 ? open / total : 0;
   return drawn;
 }
 

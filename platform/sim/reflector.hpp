@@ -34,16 +34,16 @@ struct Reflector {
   [[nodiscard]] bool is_disc() const { return normal.squaredNorm() > 0; }
 };
 
-struct Drawn {
+struct RenderedReflector {
   Vector2 pixel = Vector2::Zero();  // of the centre, mid-exposure
   double radius_px = 0;
-  double peak_signal = 0;  // 0: no light reaches the image
-  double open_share = 0;   // share of its disc with a ray, not hidden; 0: cut by the image
+  double peak_signal = 0;       // 0: no light reaches the image
+  double visible_fraction = 0;  // share of its disc with a ray, not hidden; 0: cut by the image
 };
 
-// hiders: possible occluders (camera frame).
-Drawn draw(const Reflector& reflector, const CameraModel& model, const LensRays& rays,
-           std::span<const Capsule> hiders, Planes& planes);
+// occluders: possible occluders (camera frame).
+RenderedReflector draw(const Reflector& reflector, const CameraModel& model, const LensRays& rays,
+                       std::span<const Capsule> occluders, Planes& planes);
 
 // The signal of a capsule replaces everything at larger range.
 void draw(const Capsule& capsule, const CameraModel& model, const LensRays& rays, Planes& planes);

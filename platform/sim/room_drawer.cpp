@@ -5,7 +5,7 @@
 namespace glint::sim {
 namespace {
 
-struct Seen {
+struct RoomHit {
   double range = 1e9;
   double albedo = 0;
   double cosine = 0;
@@ -14,7 +14,7 @@ struct Seen {
 double shade(int face) { return 0.7 + 0.06 * face; }  // makes the walls differ
 
 // Slab method: the ray is between the two planes of each axis from `entry` to `leave`.
-void trace_box(const Box& box, const Vector3& origin, const Vector3& ray, Seen& seen) {
+void trace_box(const Box& box, const Vector3& origin, const Vector3& ray, RoomHit& hit) {
   double entry = -1e9, leave = 1e9;
   int entry_face = 0, leave_face = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -35,9 +35,9 @@ void trace_box(const Box& box, const Vector3& origin, const Vector3& ray, Seen& 
   const bool inside = entry <= 0;
   const double range = inside ? leave : entry;
   const int axis = inside ? leave_face : entry_face;
-  if (range >= seen.range || range <= 0) return;
+  if (range >= hit.range || range <= 0) return;
   const int side = ray[axis] > 0 ? 1 : 0;
-  seen = {range, box.albedo * shade(2 * axis + side), std::abs(ray[axis])};
+  hit = {range, box.albedo * shade(2 * axis + side), std::abs(ray[axis])};
 }
 
 // Outside of the lens's field: the ray of the nearest valid position towards the centre.
@@ -85,12 +85,12 @@ void RoomDrawer::trace_row(const Room& room, const Pose& T_world_camera, double 
   for (int column = 0; column < columns_; ++column) {
     const Vector3 ray =
         T_world_camera.rotation * rays_[static_cast<std::size_t>(row * columns_ + column)];
-    Seen seen;
-    trace_box(room.walls, T_world_camera.translation, ray, seen);
-    for (const Box& box : room.furniture) trace_box(box, T_world_camera.translation, ray, seen);
-    const double range = seen.range > 0.05 ? seen.range : 0.05;
+    RoomHit hit;
+    trace_box(room.walls, T_world_camera.translation, ray, hit);
+    for (const Box& box : room.furniture) trace_box(box, T_world_camera.translation, ray, hit);
+    const double range = hit.range > 0.05 ? hit.range : 0.05;
     const auto i = static_cast<std::size_t>(column);
-    out[i] = static_cast<float>(wall_signal * seen.albedo * seen.cosine * 0.25 / (range * range));
+    out[i] = static_cast<float>(wall_signal * hit.albedo * hit.cosine * 0.25 / (range * range));
     out[i + k_room_columns_max] = static_cast<float>(range);
   }
 }

@@ -45,15 +45,16 @@ struct OcclusionEvent {
   Interval during;
   int tool = 0;
   double radius_m = 0.09;
-  double share_of_range = 0.6;
+  double range_fraction = 0.6;
 };
 
-// The tool leaves: displaced by away_m (world) within the interval, with way_s for each transition.
-struct AwayEvent {
+// The tool leaves: displaced by away_m (world) within the interval, with transition_s for each
+// transition.
+struct AbsenceEvent {
   Interval during;
   int tool = 0;
   Vector3 away_m{0, 0, -1.2};
-  double way_s = 0.25;
+  double transition_s = 0.25;
 };
 
 struct Scenario {
@@ -70,10 +71,10 @@ struct Scenario {
   ReferenceSettings reference;
   Room room;
   BackgroundFrame background;  // replaces the room if not empty
-  std::optional<Chessboard> board;
+  std::optional<Chessboard> calibration_target;
   std::vector<Clutter> clutter;
   std::vector<OcclusionEvent> occlusions;
-  std::vector<AwayEvent> aways;
+  std::vector<AbsenceEvent> absences;
 };
 
 }  // namespace glint::sim

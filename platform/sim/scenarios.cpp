@@ -29,7 +29,8 @@ void hold_still(Scenario& scenario, const std::vector<Tool>& tools) {
   scenario.tools.clear();
   for (const Tool& tool : tools) {
     const Grip grip = best_grip(tool);
-    const Pose pose = held_at(grip, place_of(static_cast<int>(scenario.tools.size())), k_camera_m);
+    const Pose pose =
+        grip_pose(grip, place_of(static_cast<int>(scenario.tools.size())), k_camera_m);
     scenario.tools.push_back(held_tool(tool, grip, scenario.signal, fixed_motion(pose)));
   }
 }
@@ -39,8 +40,8 @@ void draw_by_hand(Scenario& scenario, const std::vector<Tool>& tools, HandSettin
   for (const Tool& tool : tools) {
     const int index = static_cast<int>(scenario.tools.size());
     const Grip grip = best_grip(tool);
-    hand.T_world_tool = held_at(grip, place_of(index), k_camera_m);
-    hand.grip_m = grip.middle;
+    hand.T_world_tool = grip_pose(grip, place_of(index), k_camera_m);
+    hand.grip_m = grip.centroid;
     scenario.tools.push_back(
         held_tool(tool, grip, scenario.signal,
                   hand_motion(hand, scenario.seed, static_cast<std::uint64_t>(index))));
@@ -89,7 +90,7 @@ void lay_on_table(Scenario& scenario, std::size_t tool) {
   axes.col(0) = -Vector3::UnitY();
   axes.col(1) = axes.col(2).cross(axes.col(0));
   const Quaternion rotation = Quaternion(axes).normalized();
-  body.motion = fixed_motion({rotation, k_table_m - rotation * middle_of(body.tool)});
+  body.motion = fixed_motion({rotation, k_table_m - rotation * centroid_of(body.tool)});
   body.disc_normal = Vector3::UnitZ();
   body.parts.clear();
 }
@@ -119,7 +120,7 @@ Scenario default_run(const std::vector<Tool>& tools) {
   scenario.timing.slow.push_back(seconds(20, 24));
   scenario.occlusions.push_back({seconds(30, 31), 0, 0.09, 0.6});
   scenario.occlusions.push_back({seconds(50, 51), 0, 0.05, 0.45});
-  scenario.aways.push_back({seconds(40, 42), 0, Vector3(0, 0, -1.2)});
+  scenario.absences.push_back({seconds(40, 42), 0, Vector3(0, 0, -1.2)});
   return scenario;
 }
 
@@ -131,7 +132,7 @@ Scenario trajectory_run(const Camera& camera, const std::vector<Tool>& tools,
   scenario.head = placed_motion(head, {T_world_camera, 1.0, 1.0});
   // The pen rotates about the centroid of its markers, so that the centroid follows the recording.
   ToolBody& body = scenario.tools.front();
-  const Pose to_middle{Quaternion::Identity(), middle_of(body.tool)};
+  const Pose to_middle{Quaternion::Identity(), centroid_of(body.tool)};
   const Pose T_camera_middle = T_world_camera.inverse() * body.motion->pose(Time{}) * to_middle;
   const MotionPointer middle = placed_motion(pen, {T_camera_middle, pen_scale, 1.0});
   body.motion =
@@ -195,9 +196,9 @@ LocalisationSettings hololens1_localisation() {
   localisation.rest_angle_rad = 0.0058;
   localisation.rest_correlation_s = 3;
   localisation.position_per_speed_s = 0.245;
-  localisation.position_per_turn_m = 0.041;
+  localisation.position_per_angular_speed_m = 0.041;
   localisation.angle_per_speed_s_m = 0.62;
-  localisation.angle_per_turn_s = 0.25;
+  localisation.angle_per_angular_speed_s = 0.25;
   localisation.motion_correlation_s = 0.6;
   localisation.motion_position_bias = Vector3(0.05, 0.05, 0.05);
   localisation.motion_angle_bias = Vector3(0.025, 0.025, 0.025);

@@ -8,13 +8,14 @@
 namespace glint::sim {
 namespace {
 
-constexpr double k_way_s = 0.25;  // how long something takes to come or go
+constexpr double k_transition_s = 0.25;  // how long something takes to come or go
 
-double presence(const Interval& during, Time time, double way_s = k_way_s) {
+double presence(const Interval& during, Time time, double transition_s = k_transition_s) {
   const double t = Duration{time.nanoseconds}.seconds();
   const double begin = Duration{during.begin.nanoseconds}.seconds();
   const double end = Duration{during.end.nanoseconds}.seconds();
-  return smooth_step(t, begin, way_s) * (1 - smooth_step(t, end - way_s, way_s));
+  return smooth_step(t, begin, transition_s) *
+         (1 - smooth_step(t, end - transition_s, transition_s));
 }
 
 // Moves the image by the blob's pixel error at unchanged range, and sets its range error.
@@ -88,9 +89,9 @@ void add_occlusions(const Scenario& scenario, const Pose& T_camera_world, Time t
     if (event.tool < 0 || event.tool >= static_cast<int>(scenario.tools.size())) continue;
     const Tool& tool = scenario.tools[static_cast<std::size_t>(event.tool)].tool;
     const Vector3 target =
-        T_camera_world * (tool_pose(scenario, event.tool, time) * middle_of(tool));
+        T_camera_world * (tool_pose(scenario, event.tool, time) * centroid_of(tool));
     const double aside = 0.4 * (1 - presence(event.during, time));
-    const Vector3 place = event.share_of_range * target + Vector3(aside, 0.5 * aside, 0);
+    const Vector3 place = event.range_fraction * target + Vector3(aside, 0.5 * aside, 0);
     out.capsules.push({place, place, event.radius_m, scenario.signal.skin});
   }
 }
@@ -99,14 +100,14 @@ void add_occlusions(const Scenario& scenario, const Pose& T_camera_world, Time t
 
 Pose tool_pose(const Scenario& scenario, int tool, Time time) {
   Pose pose = scenario.tools[static_cast<std::size_t>(tool)].motion->pose(time);
-  for (const AwayEvent& event : scenario.aways) {
+  for (const AbsenceEvent& event : scenario.absences) {
     if (event.tool == tool)
-      pose.translation += presence(event.during, time, event.way_s) * event.away_m;
+      pose.translation += presence(event.during, time, event.transition_s) * event.away_m;
   }
   return pose;
 }
 
-Vector3 middle_of(const Tool& tool) {
+Vector3 centroid_of(const Tool& tool) {
   Vector3 sum = Vector3::Zero();
   for (int i = 0; i < tool.marker_count; ++i) sum += tool.markers_m[static_cast<std::size_t>(i)];
   return tool.marker_count > 0 ? Vector3(sum / tool.marker_count) : sum;

@@ -35,7 +35,7 @@ struct Scene {
 [[nodiscard]] Pose tool_pose(const Scenario& scenario, int tool, Time time);
 
 // Returns the centroid of the markers, tool frame.
-[[nodiscard]] Vector3 middle_of(const Tool& tool);
+[[nodiscard]] Vector3 centroid_of(const Tool& tool);
 
 // sequence: selects the random errors of the blobs.
 void build_scene(const Scenario& scenario, Time mid_exposure, std::uint64_t sequence, Scene& out);

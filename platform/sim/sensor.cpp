@@ -12,8 +12,8 @@ namespace {
 constexpr int k_table_starts = 1 << 16;  // 256 kB: fits the second-level cache
 constexpr int k_table_row = 512;         // minimum row length: the same table for smaller cameras
 
-float lesser(float a, float b) { return a < b ? a : b; }
-float greater(float a, float b) { return a > b ? a : b; }
+float min_of(float a, float b) { return a < b ? a : b; }
+float max_of(float a, float b) { return a > b ? a : b; }
 
 // Single precision, branch-free, each operation rounded separately: vectorised code of any compiler
 // gives the same bits.
@@ -24,7 +24,7 @@ void reflectivity_row(const float* signal, const float* normal, const std::uint1
   const auto shot = static_cast<float>(noise.shot_counts);
   for (int x = 0; x < width; ++x) {
     const float noisy = signal[x] + normal[x] * std::sqrt(read2 + shot * signal[x]);
-    const float limited = lesser(greater(noisy + 0.5f, 0.0f), ceiling);
+    const float limited = min_of(max_of(noisy + 0.5f, 0.0f), ceiling);
     out[x] = static_cast<Pixel>(static_cast<std::int32_t>(limited) & mask[x]);
   }
 }
@@ -49,11 +49,11 @@ DepthRow depth_row_of(const DepthSettings& depth, const NoiseSettings& noise) {
 void depth_row(const float* signal, const float* range, const float* normal, const float* along,
                const std::uint16_t* mask, const DepthRow& row, int width, std::uint16_t* out) {
   for (int x = 0; x < width; ++x) {
-    const float sigma = std::sqrt(row.floor2 + row.weak2 / greater(signal[x], 1.0f));
-    const float noisy = lesser(greater(range[x] + normal[x] * sigma, 0.0f), 1000.0f);
+    const float sigma = std::sqrt(row.floor2 + row.weak2 / max_of(signal[x], 1.0f));
+    const float noisy = min_of(max_of(range[x] + normal[x] * sigma, 0.0f), 1000.0f);
     const float turns = static_cast<float>(static_cast<std::int32_t>(noisy * row.inverse_wrap));
-    const float wrapped = greater(noisy - turns * row.wrap, 0.0f) * along[x];
-    const float raw = lesser(wrapped * row.counts_per_m + 0.5f, 65535.0f);
+    const float wrapped = max_of(noisy - turns * row.wrap, 0.0f) * along[x];
+    const float raw = min_of(wrapped * row.counts_per_m + 0.5f, 65535.0f);
     float kept = signal[x] >= row.signal_min ? raw : 0.0f;
     kept = signal[x] < row.saturation ? kept : 0.0f;
     kept = range[x] > 0.0f ? kept : 0.0f;

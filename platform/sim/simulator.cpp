@@ -19,7 +19,7 @@ struct Simulator::Parts {
         room(scenario.camera.model),
         sensor(scenario.camera, scenario.noise, scenario.seed),
         localisation(scenario.localisation, scenario.head, scenario.duration, scenario.seed) {
-    if (scenario.board) board.emplace(scenario.camera.model, scenario.device);
+    if (scenario.calibration_target) target_drawer.emplace(scenario.camera.model, scenario.device);
   }
 
   void draw_background(const Pose& T_world_camera, Planes& planes) const {
@@ -39,7 +39,7 @@ struct Simulator::Parts {
   RoomDrawer room;
   Sensor sensor;
   Localisation localisation;
-  std::optional<ChessboardDrawer> board;
+  std::optional<ChessboardDrawer> target_drawer;
 };
 
 Simulator::Simulator(Scenario scenario) : parts_(std::make_unique<Parts>(std::move(scenario))) {}
@@ -87,10 +87,10 @@ void Simulator::render(int i, SimFrame& out) const {
   Planes& planes = out.scratch;
   planes.resize(model.width, model.height);
   parts.draw_background(out.truth.T_world_camera, planes);
-  if (parts.board) {
-    const Chessboard& board = *parts.scenario.board;
-    const Pose T_world_board = board.motion->pose(out.truth.mid_exposure);
-    parts.board->draw(board, out.truth.T_world_camera.inverse() * T_world_board, planes);
+  if (parts.target_drawer) {
+    const Chessboard& target = *parts.scenario.calibration_target;
+    const Pose T_world_target = target.motion->pose(out.truth.mid_exposure);
+    parts.target_drawer->draw(target, out.truth.T_world_camera.inverse() * T_world_target, planes);
   }
 
   Scene scene;
@@ -98,7 +98,7 @@ void Simulator::render(int i, SimFrame& out) const {
   const std::span<const Capsule> capsules(scene.capsules.items.data(),
                                           static_cast<std::size_t>(scene.capsules.count));
   for (const Capsule& capsule : capsules) draw(capsule, model, parts.rays, planes);
-  DrawnReflectors drawn;
+  RenderedReflectors drawn;
   for (int k = 0; k < scene.reflectors.count; ++k) {
     drawn[static_cast<std::size_t>(k)] =
         draw(scene.reflectors[k], model, parts.rays, capsules, planes);

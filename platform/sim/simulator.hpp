@@ -24,7 +24,7 @@ struct SimFrame {
   Time mid_exposure, arrival;  // as stamped
   std::uint64_t sequence = 0;
   HeadPose head;  // by the drifting localisation, at the stamp
-  FrameTruth truth;
+  FrameGroundTruth truth;
   std::vector<Pose> reference;  // T_reference_tool, each tool
   Planes scratch;
 

@@ -22,7 +22,7 @@ const Vector3& marker(const Tool& tool, int i) {
   return tool.markers_m[static_cast<std::size_t>(i)];
 }
 
-Vector3 square_to(const Vector3& axis) {
+Vector3 perpendicular_to(const Vector3& axis) {
   const Vector3 other = std::abs(axis.x()) < 0.7 ? Vector3::UnitX() : Vector3::UnitY();
   return axis.cross(other).normalized();
 }
@@ -40,7 +40,7 @@ double gap_to_shaft(const Tool& tool, const Vector3& middle, int i, const Vector
 }
 
 // Returns the number of markers separate from this direction, plus the smallest gap (tie-break).
-double clear_markers(const Tool& tool, const Vector3& middle, const Vector3& direction) {
+double separate_markers(const Tool& tool, const Vector3& middle, const Vector3& direction) {
   const double apart = 2 * tool.marker_radius_m + k_clear_m;
   const double beside = tool.marker_radius_m + k_shaft_radius_m + 0.2 * k_clear_m;
   double clear = 0, least = 1;
@@ -58,12 +58,12 @@ double clear_markers(const Tool& tool, const Vector3& middle, const Vector3& dir
 }
 
 double score(const Tool& tool, const Vector3& middle, const Vector3& direction) {
-  const Vector3 right = square_to(direction), up = direction.cross(right);
-  double sum = clear_markers(tool, middle, direction);
+  const Vector3 right = perpendicular_to(direction), up = direction.cross(right);
+  double sum = separate_markers(tool, middle, direction);
   for (int i = 0; i < 2 * k_tilts; ++i) {
     const SineCosine tilt = sine_cosine(i % 2 == 0 ? k_tilt : 0.5 * k_tilt);
     const SineCosine turn = sine_cosine(3.141592653589793 * i / k_tilts);
-    sum += clear_markers(
+    sum += separate_markers(
         tool, middle, tilt.cosine * direction + tilt.sine * (turn.cosine * right + turn.sine * up));
   }
   return sum;
@@ -89,7 +89,7 @@ Vector3 plane_normal(const Tool& tool) {
 
 Grip best_grip(const Tool& tool) {
   Grip grip;
-  grip.middle = middle_of(tool);
+  grip.centroid = centroid_of(tool);
   if (tool.shape == MarkerShape::disc) {
     grip.towards_camera = plane_normal(tool);
   } else {
@@ -99,19 +99,20 @@ Grip best_grip(const Tool& tool) {
       const SineCosine turn = sine_cosine(k_golden_angle * i);
       const double across = std::sqrt(1 - z * z);
       const Vector3 direction(across * turn.cosine, across * turn.sine, z);
-      const double value = score(tool, grip.middle, direction);
+      const double value = score(tool, grip.centroid, direction);
       if (value <= best) continue;
       best = value;
       grip.towards_camera = direction;
     }
   }
-  const Vector3 stick = grip.middle - tool.tip_m;
+  const Vector3 stick = grip.centroid - tool.tip_m;
   const Vector3 across = stick - stick.dot(grip.towards_camera) * grip.towards_camera;
-  grip.up = across.norm() > 0.01 ? Vector3(across.normalized()) : square_to(grip.towards_camera);
+  grip.up =
+      across.norm() > 0.01 ? Vector3(across.normalized()) : perpendicular_to(grip.towards_camera);
   return grip;
 }
 
-Pose held_at(const Grip& grip, const Vector3& place, const Vector3& camera) {
+Pose grip_pose(const Grip& grip, const Vector3& place, const Vector3& camera) {
   const Vector3 back = (camera - place).normalized();
   const Vector3 right = Vector3::UnitZ().cross(back).normalized();
   Matrix3 world, tool;
@@ -122,7 +123,7 @@ Pose held_at(const Grip& grip, const Vector3& place, const Vector3& camera) {
   tool.col(1) = grip.up;
   tool.col(2) = tool.col(0).cross(tool.col(1));
   const Quaternion rotation = Quaternion(Matrix3(world * tool.transpose())).normalized();
-  return {rotation, place - rotation * grip.middle};
+  return {rotation, place - rotation * grip.centroid};
 }
 
 ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& signal,
@@ -133,14 +134,14 @@ ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& sig
   body.disc_normal = grip.towards_camera;
   double lowest = 0;  // along up, from the centroid
   for (int i = 0; i < tool.marker_count; ++i) {
-    const double height = (marker(tool, i) - grip.middle).dot(grip.up);
+    const double height = (marker(tool, i) - grip.centroid).dot(grip.up);
     if (height < lowest) lowest = height;
   }
   const Vector3 behind = -k_post_m * grip.towards_camera;
   const Vector3 side = grip.up.cross(grip.towards_camera);
-  const Vector3 hold = grip.middle + (lowest - k_hand_below_m) * grip.up + behind;
+  const Vector3 hold = grip.centroid + (lowest - k_hand_below_m) * grip.up + behind;
   body.parts.push_back(
-      {tool.tip_m + behind, grip.middle + behind, k_shaft_radius_m, signal.pen_body});
+      {tool.tip_m + behind, grip.centroid + behind, k_shaft_radius_m, signal.pen_body});
   const Vector3 palm = hold + 0.045 * side - 0.025 * grip.up;
   body.parts.push_back({palm, palm + 0.03 * side - 0.03 * grip.up, 0.032, signal.skin});
   for (int finger = 0; finger < 3; ++finger) {
@@ -153,7 +154,7 @@ ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& sig
   return body;
 }
 
-void put_tip_at(const Vector3& stated_m, const Quaternion& turn, ToolBody& body) {
+void align_to_stated_frame(const Vector3& stated_m, const Quaternion& turn, ToolBody& body) {
   const Pose T_made_stated{turn, body.tool.tip_m - turn * stated_m};
   const Pose T_stated_made = T_made_stated.inverse();
   body.tool.tip_m = stated_m;

@@ -8,8 +8,8 @@ namespace glint::sim {
 // Unit vectors in the tool's frame.
 struct Grip {
   Vector3 towards_camera = Vector3::UnitX();
-  Vector3 up = Vector3::UnitZ();     // from the tip to the markers, perpendicular to towards_camera
-  Vector3 middle = Vector3::Zero();  // centroid of the markers, metres
+  Vector3 up = Vector3::UnitZ();  // from the tip to the markers, perpendicular to towards_camera
+  Vector3 centroid = Vector3::Zero();  // centroid of the markers, metres
 };
 
 // Returns the direction with the most markers separate from each other and from the shaft, averaged
@@ -17,7 +17,7 @@ struct Grip {
 [[nodiscard]] Grip best_grip(const Tool& tool);
 
 // Returns T_world_tool with the markers' centroid at `place` and the best side towards the camera.
-[[nodiscard]] Pose held_at(const Grip& grip, const Vector3& place, const Vector3& camera);
+[[nodiscard]] Pose grip_pose(const Grip& grip, const Vector3& place, const Vector3& camera);
 
 // Adds shaft and hand behind and below the markers. The shaft is 15 mm behind the line from the tip
 // to the markers' centroid, since markers are on posts. The hand begins 45 mm below the lowest
@@ -27,6 +27,6 @@ struct Grip {
 
 // Expresses the body in a frame rotated by `turn` and translated so that its true tip is at
 // stated_m. Ground truth and estimate then refer to the same point and axes.
-void put_tip_at(const Vector3& stated_m, const Quaternion& turn, ToolBody& body);
+void align_to_stated_frame(const Vector3& stated_m, const Quaternion& turn, ToolBody& body);
 
 }  // namespace glint::sim

@@ -15,9 +15,9 @@ namespace {
 constexpr double k_lift_m = 0.04;  // of the tool, between two touches
 
 // Sequence of motions, with a smooth transition between two.
-class Stations final : public Motion {
+class MotionSequence final : public Motion {
  public:
-  Stations(std::vector<MotionPointer> stations, const TouchSettings& settings, double lift_m)
+  MotionSequence(std::vector<MotionPointer> stations, const TouchSettings& settings, double lift_m)
       : stations_(std::move(stations)), settings_(settings), lift_m_(lift_m) {}
 
   [[nodiscard]] Pose pose(Time time) const override {
@@ -41,9 +41,9 @@ class Stations final : public Motion {
 };
 
 // Sequence of uniform random numbers.
-class TouchDraws {
+class UniformSequence {
  public:
-  explicit TouchDraws(std::uint64_t seed) : key_{seed, Stream::touches} {}
+  explicit UniformSequence(std::uint64_t seed) : key_{seed, Stream::touches} {}
   double between(double low, double high) { return low + (high - low) * uniform(key_, next_++); }
 
  private:
@@ -61,12 +61,12 @@ Duration TouchSettings::duration() const {
 void touch_points(const TouchSettings& settings, std::uint64_t seed, Scenario& scenario) {
   ToolBody& body = scenario.tools.front();
   const Grip grip = best_grip(body.tool);
-  TouchDraws draws(seed);
+  UniformSequence draws(seed);
   std::vector<MotionPointer> heads, tools;
   for (int i = 0; i <= settings.touches; ++i) {
     const bool second = i % 3 == 2 && i < settings.touches;
     const Vector3& point = second ? settings.second_m : settings.first_m;
-    const Vector3 markers = point + (grip.middle - body.tool.tip_m).norm() * Vector3::UnitZ();
+    const Vector3 markers = point + (grip.centroid - body.tool.tip_m).norm() * Vector3::UnitZ();
     const double aside = draws.between(-settings.view_aside_rad, settings.view_aside_rad);
     const double up = draws.between(settings.view_up_rad[0], settings.view_up_rad[1]);
     const Vector3 back = from_rotation_vector(Vector3(0, 0, aside)) *
@@ -84,15 +84,15 @@ void touch_points(const TouchSettings& settings, std::uint64_t seed, Scenario& s
     const Vector3 axis = from_rotation_vector(side * Vector3::UnitZ()) * Vector3::UnitX();
     HandSettings hand;
     hand.T_world_tool.rotation =
-        (from_rotation_vector(lean * axis) * held_at(grip, markers, head.position_m).rotation)
+        (from_rotation_vector(lean * axis) * grip_pose(grip, markers, head.position_m).rotation)
             .normalized();
     hand.T_world_tool.translation = point - hand.T_world_tool.rotation * body.tool.tip_m;
     hand.grip_m = body.tool.tip_m;
     hand.rest_fraction = 1;
     tools.push_back(hand_motion(hand, seed, static_cast<std::uint64_t>(i)));
   }
-  scenario.head = std::make_shared<Stations>(std::move(heads), settings, 0);
-  body.motion = std::make_shared<Stations>(std::move(tools), settings, k_lift_m);
+  scenario.head = std::make_shared<MotionSequence>(std::move(heads), settings, 0);
+  body.motion = std::make_shared<MotionSequence>(std::move(tools), settings, k_lift_m);
   scenario.duration = settings.duration();
 }
 

@@ -1,7 +1,8 @@
 // Visibility of markers from ground truth alone: the rule behind the count of `trackable` frames.
 //
 // A marker is visible if
-//   - at least k_open_share_min of its disc (its silhouette) is unobstructed; a pixel whose ray the
+//   - at least k_visible_fraction_min of its disc (its silhouette) is unobstructed; a pixel whose
+//   ray the
 //     lens does not map counts as obstructed,
 //   - its disc is inside the image,
 //   - its range is within the camera's range_min_m..range_max_m,
@@ -19,12 +20,12 @@
 
 namespace glint::sim {
 
-inline constexpr double k_open_share_min = 0.80;
+inline constexpr double k_visible_fraction_min = 0.80;
 inline constexpr double k_gap_px = 2.0;
 
-using DrawnReflectors = std::array<Drawn, k_reflectors_max>;  // in the scene's order
+using RenderedReflectors = std::array<RenderedReflector, k_reflectors_max>;  // in the scene's order
 
-void find_visible(const Camera& camera, const Scene& scene, const DrawnReflectors& drawn,
+void find_visible(const Camera& camera, const Scene& scene, const RenderedReflectors& drawn,
                   std::vector<std::uint8_t>& masks);  // one per tool; sized by the caller
 
 }  // namespace glint::sim

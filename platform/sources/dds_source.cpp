@@ -19,9 +19,9 @@
 namespace glint {
 namespace {
 
-constexpr int k_images_kept = 16;       // a third of a second of AHAT, 0.5 MB each
-constexpr int k_transforms_kept = 100;  // as tf2_ros
-constexpr int k_takes_max = 256;        // rounds over the topics per reading of the clock
+constexpr int k_image_queue_size = 16;       // a third of a second of AHAT, 0.5 MB each
+constexpr int k_transform_queue_size = 100;  // as tf2_ros
+constexpr int k_take_rounds_max = 256;       // rounds over the topics per reading of the clock
 constexpr Duration k_lens_wait = milliseconds(10'000);
 constexpr Duration k_lens_poll = milliseconds(10);
 
@@ -43,14 +43,14 @@ struct Packed {
 };
 
 // Takes the next message; returns false if there is none.
-bool take_packed(dds_entity_t reader, Packed& packed, dds_sample_info_t& info) {
+bool take_serialised(dds_entity_t reader, Packed& packed, dds_sample_info_t& info) {
   return dds_takecdr(reader, &packed.data, 1, &info, DDS_ANY_STATE) == 1;
 }
 
 std::string checked_topic(const SourceSettings& source, const char* key, const std::string& topic) {
   std::string name = dds_topic(topic);
   if (!topic.empty() && !name.empty()) return name;
-  throw InputError(source.place + "." + key + ": " +
+  throw InputError(source.position + "." + key + ": " +
                    (topic.empty() ? "none named" : "\"" + printable(topic) + "\"") +
                    "; expected a topic's name, as /tof/image");
 }
@@ -63,7 +63,7 @@ SourceLens lens_from(Participant& participant, const std::string& topic, LiveSet
   while (monotonic_now() < end && (live.stop == nullptr || !*live.stop)) {
     Packed packed;
     dds_sample_info_t info;
-    if (take_packed(reader, packed, info) && info.valid_data) {
+    if (take_serialised(reader, packed, info) && info.valid_data) {
       SourceLens lens{topic, {}, lens_text_of_camera_info(packed.message(), topic)};
       dds_delete(reader);
       return lens;
@@ -82,7 +82,7 @@ std::unique_ptr<DdsSource> DdsSource::open(Cell& cell, LiveSettings live) {
   (void)checked_topic(source, "reflectivity_topic", source.reflectivity_topic);
   (void)checked_topic(source, "depth_topic", source.depth_topic);
   if (source.camera_info_topic.empty()) {
-    source.camera_info_topic = camera_info_beside(source.reflectivity_topic);
+    source.camera_info_topic = camera_info_topic_of(source.reflectivity_topic);
   }
   (void)checked_topic(source, "camera_info_topic", source.camera_info_topic);
   if (!source.pose_topic.empty()) (void)checked_topic(source, "pose_topic", source.pose_topic);
@@ -121,9 +121,9 @@ void DdsSource::add(Use use, const std::string& topic, bool reliable) {
                                             : tf_type();
   Quality quality;
   quality.reliability = reliable ? Reliability::reliable : Reliability::best_effort;
-  quality.depth = is_image ? k_images_kept : k_transforms_kept;
+  quality.depth = is_image ? k_image_queue_size : k_transform_queue_size;
   if (use == Use::fixed_transforms) quality.durability = Durability::transient_local;
-  Input& input = inputs_.emplace_back(use, is_there_);
+  Input& input = inputs_.emplace_back(use, has_message_);
   input.topic = topic;
   input.reader = participant_->reader(type, dds_topic(topic), quality);
   dds_listener_t* const listener = dds_create_listener(&input);
@@ -147,30 +147,30 @@ void DdsSource::stop() {
 void DdsSource::on_message(dds_entity_t /*reader*/, void* argument) noexcept {
   Input& input = *static_cast<Input*>(argument);
   const bool is_image = input.use == Use::reflectivity || input.use == Use::depth;
-  if (input.waiting >= (is_image ? k_images_kept : k_transforms_kept)) {
+  if (input.waiting >= (is_image ? k_image_queue_size : k_transform_queue_size)) {
     ++input.overwritten;
   } else {
     ++input.waiting;
   }
-  input.is_there.post();
+  input.has_message.post();
 }
 
 void DdsSource::run() noexcept {
   while (!stop_) {
-    (void)is_there_.wait_until(std::min(monotonic_now() + k_live_poll, frames_.due()));
+    (void)has_message_.wait_until(std::min(monotonic_now() + k_live_poll, frames_.due()));
     bool any = true;
-    for (int round = 0; any && round < k_takes_max; ++round) {
+    for (int round = 0; any && round < k_take_rounds_max; ++round) {
       any = false;
       for (Input& input : inputs_) any = take(input) || any;  // transforms before their images
     }
-    frames_.hand_over(monotonic_now());
+    frames_.publish_ready(monotonic_now());
   }
 }
 
 bool DdsSource::take(Input& input) {
   Packed packed;
   dds_sample_info_t info;
-  if (!take_packed(input.reader, packed, info)) {
+  if (!take_serialised(input.reader, packed, info)) {
     input.waiting = 0;  // `waiting` also counted a publisher's end
     return false;
   }
@@ -190,14 +190,14 @@ void DdsSource::use(const Input& input, std::span<const std::uint8_t> message,
                     std::uint64_t publisher) {
   switch (input.use) {
     case Use::reflectivity:
-      return frames_.take_image(message, ImageKind::reflectivity, publisher, monotonic_now());
+      return frames_.add_image(message, ImageKind::reflectivity, publisher, monotonic_now());
     case Use::depth:
-      return frames_.take_image(message, ImageKind::depth, publisher, monotonic_now());
+      return frames_.add_image(message, ImageKind::depth, publisher, monotonic_now());
     case Use::pose:
-      return frames_.take_pose(message);
+      return frames_.add_pose(message);
     case Use::moving_transforms:
     case Use::fixed_transforms:
-      return frames_.take_transforms(message, input.use == Use::fixed_transforms);
+      return frames_.add_transforms(message, input.use == Use::fixed_transforms);
   }
 }
 

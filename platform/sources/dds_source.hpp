@@ -3,7 +3,7 @@
 // default scheduling receives the messages as bytes; RosFrames converts them to frames.
 //
 // Cyclone allocates heap for received messages, in its own threads. Its queue holds at most
-// k_images_kept images of each topic.
+// k_image_queue_size images of each topic.
 #pragma once
 
 #include <dds/dds.h>
@@ -40,9 +40,9 @@ class DdsSource final : public LiveSource {
   enum class Use : std::uint8_t { reflectivity, depth, pose, moving_transforms, fixed_transforms };
   // A subscribed topic.
   struct Input {
-    Input(Use is_for, Release& posts) : use(is_for), is_there(posts) {}
+    Input(Use is_for, Release& posts) : use(is_for), has_message(posts) {}
     Use use;
-    Release& is_there;
+    Release& has_message;
     dds_entity_t reader = 0;
     std::atomic<int> waiting{0};  // messages in the reader
     std::atomic<std::uint64_t> overwritten{0};
@@ -60,7 +60,7 @@ class DdsSource final : public LiveSource {
   SourceSettings source_;
   int domain_;
   RosFrames frames_;
-  Release is_there_;
+  Release has_message_;
   std::deque<Input> inputs_;
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -34,7 +34,7 @@ FileSource::FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera
     if (reader_->unreadable() > 0) why += "; the first: " + reader_->first_unreadable();
     throw InputError(reader_->text() + ": no frame" + why + "; expected at least one");
   }
-  if (const std::string wrong = misfit(first.frame.pixels); !wrong.empty()) {
+  if (const std::string wrong = camera_mismatch(first.frame.pixels); !wrong.empty()) {
     throw InputError(reader_->text() + ": the first frame has " + wrong);
   }
   // If the first stamp is within a second of 0, stamps count from the session's start, as in a
@@ -49,7 +49,7 @@ FileSource::FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera
     throw InputError(reader_->text() + ": the first frame's stamp is " +
                      std::to_string(begin.nanoseconds) + " ns; expected within 4e18 of 0");
   }
-  put_in_session_time(first);
+  convert_to_session_time(first);
   read_ = 1;
   is_read_.post();
   for (std::size_t i = 1; i < slots_.size(); ++i) is_free_.post();
@@ -83,19 +83,19 @@ void FileSource::read_all() noexcept {
 
 bool FileSource::read_usable(Slot& slot) {
   while (!stop_ && reader_->next(slot.frame)) {
-    if (std::string wrong = misfit(slot.frame.pixels); !wrong.empty()) {
-      if (misfits_++ == 0) first_misfit_ = std::move(wrong);
+    if (std::string wrong = camera_mismatch(slot.frame.pixels); !wrong.empty()) {
+      if (camera_mismatches_++ == 0) first_camera_mismatch_ = std::move(wrong);
       continue;
     }
     if (!gate_.take(slot.frame.mid_exposure)) continue;
-    put_in_session_time(slot);
+    convert_to_session_time(slot);
     return duration_ == Duration{} || slot.arrival < Time{} + duration_;
   }
   return false;
 }
 
 // Returns the mismatch of a frame's planes with the camera; empty if they match.
-std::string FileSource::misfit(const FrameBuffer& pixels) const {
+std::string FileSource::camera_mismatch(const FrameBuffer& pixels) const {
   const int width = camera_.model.width, height = camera_.model.height;
   const std::string expected = "; expected " + size_text(width, height) + " pixels with " +
                                std::to_string(camera_.reflectivity_bits) +
@@ -114,7 +114,7 @@ std::string FileSource::misfit(const FrameBuffer& pixels) const {
   return {};
 }
 
-void FileSource::put_in_session_time(Slot& slot) {
+void FileSource::convert_to_session_time(Slot& slot) {
   ReadFrame& frame = slot.frame;
   const Duration moved = gate_.offset() - origin_;
   const Time declared =
@@ -176,21 +176,22 @@ SourceReport FileSource::report() {
   report.counts = {
       {"stamps_doubled", stamps.doubled},
       {"stamps_backward", stamps.backward},
-      {"stamps_far_off", stamps.leaps},
+      {"stamps_far_off", stamps.far_off},
       {"clock_restarts", stamps.restarts},
       {"gaps_over_1_s", stamps.gaps},
       {"longest_gap_ms", static_cast<std::uint64_t>(stamps.longest_gap.nanoseconds / 1'000'000)},
       {"frames_without_head_pose", without_pose_},
       {"head_poses_refused", poses_refused_},
-      {"frames_unreadable", reader_->unreadable() + misfits_}};
+      {"frames_unreadable", reader_->unreadable() + camera_mismatches_}};
   for (const auto& count : reader_->counts()) report.counts.push_back(count);
   if (reader_->unreadable() > 0) {
     report.failures.push_back(std::to_string(reader_->unreadable()) +
                               " frames cannot be read, the first: " + reader_->first_unreadable());
   }
-  if (misfits_ > 0) {
-    report.failures.push_back(std::to_string(misfits_) +
-                              " frames are not this camera's; the first has " + first_misfit_);
+  if (camera_mismatches_ > 0) {
+    report.failures.push_back(std::to_string(camera_mismatches_) +
+                              " frames are not this camera's; the first has " +
+                              first_camera_mismatch_);
   }
   if (const std::string missing = reader_->missing(); !missing.empty()) {
     report.failures.push_back(missing);

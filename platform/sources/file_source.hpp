@@ -30,7 +30,7 @@ class FileSource final : public FrameSource {
 
   void start(const SourceClock& clock) override { clock_ = clock; }
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
-  void give_back(const ArrivedFrame& /*arrived*/) noexcept override { is_free_.post(); }
+  void release_pixels(const ArrivedFrame& /*arrived*/) noexcept override { is_free_.post(); }
   [[nodiscard]] bool late(Time now) const noexcept override {
     return now.nanoseconds >= late_since_ns_.load(std::memory_order_relaxed);
   }
@@ -50,8 +50,8 @@ class FileSource final : public FrameSource {
   void read_all() noexcept;
   void stop();
   [[nodiscard]] bool read_usable(Slot& slot);
-  [[nodiscard]] std::string misfit(const FrameBuffer& pixels) const;
-  void put_in_session_time(Slot& slot);
+  [[nodiscard]] std::string camera_mismatch(const FrameBuffer& pixels) const;
+  void convert_to_session_time(Slot& slot);
   [[nodiscard]] Slot& slot_of(std::size_t number) { return slots_[number % slots_.size()]; }
 
   std::unique_ptr<FrameReader> reader_;
@@ -70,8 +70,8 @@ class FileSource final : public FrameSource {
   StampGate gate_;
   Duration origin_;  // of session time, on the stamps' clock
   Time newest_arrival_;
-  std::uint64_t next_sequence_ = 0, without_pose_ = 0, poses_refused_ = 0, misfits_ = 0;
-  std::string first_misfit_, ended_by_;
+  std::uint64_t next_sequence_ = 0, without_pose_ = 0, poses_refused_ = 0, camera_mismatches_ = 0;
+  std::string first_camera_mismatch_, ended_by_;
   std::thread thread_;
 };
 

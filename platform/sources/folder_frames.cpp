@@ -28,7 +28,7 @@ enum Column {
 constexpr std::array<std::string_view, k_columns> k_names = {
     "time_ns", "reflectivity", "depth", "arrival_ns", "sequence", "x_m",
     "y_m",     "z_m",          "qx",    "qy",         "qz",       "qw"};
-constexpr int k_needed = 3;
+constexpr int k_required_columns = 3;
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blank = " \t\r";
@@ -64,8 +64,8 @@ bool ends_with(const std::string& text, std::string_view end) {
 // metres: depth of one raw count, for an array of floats.
 PixelPlane read_array(const std::string& path, double metres) {
   const NpyNumbers array = read_npy_numbers(path);
-  if (array.shape.size() != 2 || array.shape[0] > k_picture_side_max ||
-      array.shape[1] > k_picture_side_max) {
+  if (array.shape.size() != 2 || array.shape[0] > k_image_side_max ||
+      array.shape[1] > k_image_side_max) {
     throw InputError(path + ":shape: not a picture; expected rows x columns");
   }
   PixelPlane plane{static_cast<int>(array.shape[1]), static_cast<int>(array.shape[0]), {}, path};
@@ -79,7 +79,7 @@ PixelPlane read_array(const std::string& path, double metres) {
 
 PixelPlane read_plane(const std::string& path, double metres) {
   if (ends_with(path, ".npy")) return read_array(path, metres);
-  Picture picture = read_picture(path);
+  Image picture = read_image_file(path);
   if (picture.channels != 1) {
     throw InputError(path + ": a picture in colour; expected grey, 8 or 16 bits");
   }
@@ -115,7 +115,7 @@ void FolderFrames::read_heading(std::string_view line) {
   }
   for (std::size_t i = 0; i < k_columns; ++i) {
     const bool pose = i >= k_pose;
-    if (found[i] == (pose ? found[k_pose] : i < k_needed || found[i])) continue;
+    if (found[i] == (pose ? found[k_pose] : i < k_required_columns || found[i])) continue;
     throw InputError(place + "no column " + std::string(k_names[i]) + "; expected " +
                      (pose ? "all seven of a pose, or none" : "it beside the others"));
   }

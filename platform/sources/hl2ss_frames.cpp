@@ -175,7 +175,7 @@ void Hl2ssFrames::read_packet(std::uint64_t at, std::uint32_t bytes, ReadFrame& 
     if (bytes <= k_sensor_ticks) refuse(std::to_string(bytes) + " bytes", "a PNG picture");
     const std::string_view png(reinterpret_cast<const char*>(packet_.data()),
                                bytes - k_sensor_ticks);
-    const Picture picture =
+    const Image picture =
         png_of(png, file_.path() + ":byte " + std::to_string(at), "a PNG picture", true);
     if (picture.channels != 4 || picture.bits != 8 || picture.values.size() != 2 * plane_bytes) {
       refuse("a picture of " + std::to_string(picture.width) + " x " +

@@ -70,7 +70,7 @@ void LiveSource::restart_clock() {
   map_.emplace(camera_.transport + Duration{camera_.exposure.nanoseconds / 2});
 }
 
-bool LiveSource::ascends(Time stamp, Time& newest) {
+bool LiveSource::accept_rising(Time stamp, Time& newest) {
   if (stamp <= newest && newest - stamp < ClockMap::k_step) {
     ++backward_;
     return false;
@@ -91,8 +91,8 @@ std::optional<Time> LiveSource::exposure_of(Time stamp, Time arrival) {
   return exposure;
 }
 
-LiveSource::Slot* LiveSource::room() {
-  return written_ - given_back_ < k_live_frames ? &slots_[written_ % k_live_frames] : nullptr;
+LiveSource::Slot* LiveSource::free_slot() {
+  return written_ - released_ < k_live_frames ? &slots_[written_ % k_live_frames] : nullptr;
 }
 
 void LiveSource::publish(Time mid_exposure, Time arrival, const HeadPose& head) {

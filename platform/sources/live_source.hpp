@@ -33,7 +33,7 @@ class LiveSource : public FrameSource {
   // Throws InputError if the clock is not live.
   void start(const SourceClock& clock) override;
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
-  void give_back(const ArrivedFrame& /*arrived*/) noexcept override { ++given_back_; }
+  void release_pixels(const ArrivedFrame& /*arrived*/) noexcept override { ++released_; }
   [[nodiscard]] Duration duration() const noexcept override { return settings_.duration; }
   [[nodiscard]] double delivered_part() const noexcept override;
 
@@ -52,15 +52,15 @@ class LiveSource : public FrameSource {
   // If the stamp is newer than `newest`, stores it there and returns true; otherwise counts it. A
   // stamp far before `newest` may be of a clock that was set back: it is accepted here and the
   // clock map decides.
-  [[nodiscard]] bool ascends(Time stamp, Time& newest);
+  [[nodiscard]] bool accept_rising(Time stamp, Time& newest);
   // Returns the mid-exposure in session time; empty if the stamp is refused (counted) or before the
   // session.
   [[nodiscard]] std::optional<Time> exposure_of(Time stamp, Time arrival);
   // Returns the slot for the next frame; null if the tracker holds all. drop() counts a lost frame.
-  [[nodiscard]] Slot* room();
+  [[nodiscard]] Slot* free_slot();
   void drop() { dropped_ += ended_ ? 0 : 1; }
-  // Publishes the slot of room(). arrival: monotonic clock. An invalid head pose is cleared and
-  // counted.
+  // Publishes the slot of free_slot(). arrival: monotonic clock. An invalid head pose is cleared
+  // and counted.
   void publish(Time mid_exposure, Time arrival, const HeadPose& head);
   [[nodiscard]] std::uint64_t published() const { return written_; }
   // Adds the counts and the failures of this class to the report.
@@ -77,7 +77,7 @@ class LiveSource : public FrameSource {
   SourceClock clock_;
   std::vector<Slot> slots_;
   Release is_read_;
-  std::atomic<std::uint64_t> written_{0}, given_back_{0};
+  std::atomic<std::uint64_t> written_{0}, released_{0};
   std::uint64_t delivered_ = 0;
   std::atomic<bool> started_{false}, ended_{false};
   std::optional<ClockMap> map_;

@@ -22,7 +22,7 @@ constexpr std::array k_live_kind_list = {
              }},
     LiveKind{"shm", [](Cell& cell, LiveSettings live) -> std::unique_ptr<LiveSource> {
                if (cell.source.path.empty()) {
-                 throw InputError(cell.source.place +
+                 throw InputError(cell.source.position +
                                   ".path: none; expected where the shm's socket shall be");
                }
                require_lens(cell);
@@ -44,7 +44,7 @@ std::unique_ptr<LiveSource> open_live_source(Cell& cell, LiveSettings live) {
                                  [&](const LiveKind& one) { return one.name == source.kind; });
   if (kind == k_live_kind_list.end()) return nullptr;
   if (!cell.realtime) {
-    throw InputError(source.place + ".kind: " + source.kind +
+    throw InputError(source.position + ".kind: " + source.kind +
                      " is live; expected a run in real time");
   }
   return kind->open(cell, live);

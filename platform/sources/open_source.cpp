@@ -39,7 +39,7 @@ bool is_mcap(const std::string& path) {
 }
 
 // Treats a damaged file as Glint's own, so that its reader reports the damage.
-bool is_of_another_program(const std::string& path) {
+bool is_foreign_mcap(const std::string& path) {
   try {
     return !McapReader(path, McapEnding::optional).metadata().contains(k_opening_metadata);
   } catch (const InputError&) {
@@ -76,15 +76,14 @@ constexpr std::array k_kinds = {
                [](const Cell& cell, ReadTolerance) -> Opened {
                  return std::make_unique<Hl2ssFrames>(cell.source, cell.camera);
                }},
-    SourceKind{
-        "recording",
-        [](const std::string& path) { return is_mcap(path) && !is_of_another_program(path); },
-        [](const Cell& cell, ReadTolerance tolerance) -> Opened {
-          return std::make_unique<RecordingFrames>(cell.source.path, tolerance);
-        }},
+    SourceKind{"recording",
+               [](const std::string& path) { return is_mcap(path) && !is_foreign_mcap(path); },
+               [](const Cell& cell, ReadTolerance tolerance) -> Opened {
+                 return std::make_unique<RecordingFrames>(cell.source.path, tolerance);
+               }},
     SourceKind{"rosbag",
                [](const std::string& path) {
-                 return (is_mcap(path) && is_of_another_program(path)) ||
+                 return (is_mcap(path) && is_foreign_mcap(path)) ||
                         has_file(path,
                                  [](const std::string& name) { return name.ends_with(".mcap"); });
                },
@@ -126,13 +125,13 @@ std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance, Li
   }
   if (auto opened = open_live_source(cell, live)) return opened;
   if (source.path.empty()) {
-    throw InputError(source.place + ".path: none; expected the file or folder of the " +
+    throw InputError(source.position + ".path: none; expected the file or folder of the " +
                      printable(source.kind));
   }
   const auto kind = std::find_if(k_kinds.begin(), k_kinds.end(),
                                  [&](const SourceKind& one) { return one.name == source.kind; });
   if (kind == k_kinds.end()) {
-    throw InputError(source.place + ".kind: \"" + printable(source.kind) +
+    throw InputError(source.position + ".kind: \"" + printable(source.kind) +
                      "\"; expected simulator, " + live_kinds() + ", " + recorded_kinds());
   }
   Opened reader = kind->open(cell, tolerance);

@@ -43,7 +43,7 @@ bool RosFrames::is_publisher(Stream& stream, ImageKind kind, std::uint64_t publi
                              Time arrival) {
   if (stream.publisher != publisher) {
     if (stream.publisher && arrival - stream.newest_arrival < k_publisher_silent) {
-      ++foreign_;
+      ++other_publisher_;
       return false;
     }
     stream.publisher = publisher;
@@ -61,8 +61,8 @@ bool RosFrames::is_publisher(Stream& stream, ImageKind kind, std::uint64_t publi
   return true;
 }
 
-void RosFrames::take_image(std::span<const std::uint8_t> message, ImageKind kind,
-                           std::uint64_t publisher, Time arrival) {
+void RosFrames::add_image(std::span<const std::uint8_t> message, ImageKind kind,
+                          std::uint64_t publisher, Time arrival) {
   Stream& stream = streams_[static_cast<std::size_t>(kind)];
   if (!is_publisher(stream, kind, publisher, arrival)) return;
   Image image = std::move(spare_.back());
@@ -71,7 +71,7 @@ void RosFrames::take_image(std::span<const std::uint8_t> message, ImageKind kind
   bool is_taken = false;
   try {
     read(message, stream, kind, image);
-    is_taken = frames_.ascends(image.stamp, stream.newest_stamp);
+    is_taken = frames_.accept_rising(image.stamp, stream.newest_stamp);
   } catch (const InputError& error) {
     refuse(error.what());
   }
@@ -118,7 +118,7 @@ void RosFrames::pair_up(Image image, ImageKind kind) {
   const Time arrival = std::max(image.arrival, partner->arrival);
   if (const auto mid_exposure = frames_.exposure_of(image.stamp, arrival)) {
     complete_.push_back({std::move(image), std::move(*partner), *mid_exposure, arrival});
-    hand_over(arrival);
+    publish_ready(arrival);
   } else {
     spare_.push_back(std::move(image));
     spare_.push_back(std::move(*partner));
@@ -133,12 +133,12 @@ std::string_view RosFrames::camera_of(const Pair& pair) const {
 // one may follow.
 bool RosFrames::may_get_pose(const Pair& pair) const {
   if (world_.empty()) return false;
-  const std::optional<Time> until = transforms_.known_until(world_, camera_of(pair));
+  const std::optional<Time> until = transforms_.available_until(world_, camera_of(pair));
   return until && *until < pair.reflectivity.stamp &&
          pair.reflectivity.stamp - *until <= k_transform_gap_max;
 }
 
-void RosFrames::hand_over(Time now) {
+void RosFrames::publish_ready(Time now) {
   while (!complete_.empty()) {
     Pair& oldest = complete_.front();
     if (may_get_pose(oldest)) {
@@ -158,7 +158,7 @@ Time RosFrames::due() const {
 }
 
 void RosFrames::deliver(Pair& pair) {
-  LiveSource::Slot* const slot = frames_.room();
+  LiveSource::Slot* const slot = frames_.free_slot();
   if (slot == nullptr) return frames_.drop();
   slot->pixels.depth.swap(pair.depth.values);
   if (frames_.camera().reflectivity_bits > 8) {
@@ -178,14 +178,14 @@ void RosFrames::deliver(Pair& pair) {
   frames_.publish(pair.mid_exposure, pair.arrival, head);
 }
 
-void RosFrames::take_transforms(std::span<const std::uint8_t> message, bool fixed) {
+void RosFrames::add_transforms(std::span<const std::uint8_t> message, bool fixed) {
   add_ros_transforms(message, fixed, transforms_);
 }
 
 // The frame of the first pose is the world, unless the cell names it.
-void RosFrames::take_pose(std::span<const std::uint8_t> message) {
+void RosFrames::add_pose(std::span<const std::uint8_t> message) {
   const std::string_view frame = add_ros_pose(message, pose_topic_, transforms_);
-  if (frame.empty()) ++poses_broken_;
+  if (frame.empty()) ++poses_incomplete_;
   if (world_.empty()) world_ = frame;
 }
 
@@ -199,17 +199,18 @@ void RosFrames::add_to(SourceReport& report) const {
   report.counts.insert(report.counts.end(),
                        {{"publishers", publishers_},
                         {"images_refused", refused_},
-                        {"images_of_another_publisher", foreign_},
+                        {"images_of_another_publisher", other_publisher_},
                         {"images_unpaired", unpaired_ + waiting},
                         {"head_poses_late", poses_late_},
-                        {"transforms_refused", transforms_.refused() + poses_broken_}});
+                        {"transforms_refused", transforms_.refused() + poses_incomplete_}});
   if (refused_ > 0) {
     report.failures.push_back(std::to_string(refused_) +
                               " messages refused, the first: " + first_refusal_);
   }
-  if (foreign_ > 0) {
-    report.failures.push_back(std::to_string(foreign_) + " images of another publisher on " +
-                              streams_[0].topic + " or " + streams_[1].topic + "; expected one");
+  if (other_publisher_ > 0) {
+    report.failures.push_back(std::to_string(other_publisher_) +
+                              " images of another publisher on " + streams_[0].topic + " or " +
+                              streams_[1].topic + "; expected one");
   }
 }
 

@@ -33,16 +33,16 @@ class RosFrames {
   RosFrames(LiveSource& frames, const SourceSettings& source);
 
   // publisher: any unique number. arrival: monotonic clock.
-  void take_image(std::span<const std::uint8_t> message, ImageKind kind, std::uint64_t publisher,
-                  Time arrival);
-  void take_transforms(std::span<const std::uint8_t> message, bool fixed);
-  void take_pose(std::span<const std::uint8_t> message);
+  void add_image(std::span<const std::uint8_t> message, ImageKind kind, std::uint64_t publisher,
+                 Time arrival);
+  void add_transforms(std::span<const std::uint8_t> message, bool fixed);
+  void add_pose(std::span<const std::uint8_t> message);
   // Counts a message that is refused unread. why: found and expected.
   void refuse(const std::string& why);
 
   // Publishes the oldest frames as long as each has its head pose, cannot get one, or is due.
-  void hand_over(Time now);
-  // Time at which hand_over() is due without a new message; INT64_MAX if no frame waits.
+  void publish_ready(Time now);
+  // Time at which publish_ready() is due without a new message; INT64_MAX if no frame waits.
   [[nodiscard]] Time due() const;
   [[nodiscard]] std::uint64_t publishers() const { return publishers_; }
   void add_to(SourceReport& report) const;
@@ -78,8 +78,8 @@ class RosFrames {
   std::vector<Pair> complete_;  // wait for their head pose, oldest first
   TransformTree transforms_{TransformHistory::newest};
   std::string pose_topic_, world_;  // empty: none; unknown
-  std::uint64_t publishers_ = 0, foreign_ = 0, refused_ = 0, unpaired_ = 0, poses_late_ = 0,
-                poses_broken_ = 0;
+  std::uint64_t publishers_ = 0, other_publisher_ = 0, refused_ = 0, unpaired_ = 0, poses_late_ = 0,
+                poses_incomplete_ = 0;
   std::string first_refusal_;
 };
 

@@ -99,7 +99,7 @@ RosImageView ros_image_view(std::span<const std::uint8_t> message, const std::st
   }
   image.pixel_bytes = encoding->bytes;
   image.metres = encoding->metres;
-  if (width > k_picture_side_max || height > k_picture_side_max ||
+  if (width > k_image_side_max || height > k_image_side_max ||
       image.row_bytes < width * image.pixel_bytes ||
       image.rows.size() != std::uint64_t{image.row_bytes} * height) {
     fail(topic,
@@ -144,7 +144,7 @@ RosImage ros_image_of(std::span<const std::uint8_t> message, double unit_m,
   return image;
 }
 
-std::string camera_info_beside(const std::string& topic) {
+std::string camera_info_topic_of(const std::string& topic) {
   return topic.substr(0, topic.rfind('/') + 1) + "camera_info";
 }
 

@@ -47,7 +47,7 @@ struct RosImage {
                                     const std::string& topic);
 
 // Returns the CameraInfo topic of an image topic by ROS's convention: /ir/image, /ir/camera_info.
-[[nodiscard]] std::string camera_info_beside(const std::string& topic);
+[[nodiscard]] std::string camera_info_topic_of(const std::string& topic);
 
 // Converts a CameraInfo to the text of a file of `glint calibrate camera`. ROS has pixel centres at
 // integers, Glint at integers + 0.5. Throws InputError: a distortion model other than plumb_bob and

@@ -68,7 +68,7 @@ RosbagFrames::RosbagFrames(const SourceSettings& source, const Camera& camera,
 }
 
 bool RosbagFrames::open_next_file() {
-  if (file_) note_losses();
+  if (file_) record_losses();
   file_.reset();
   if (files_opened_ == files_.size()) return false;
   file_ = std::make_unique<McapReader>(
@@ -77,7 +77,7 @@ bool RosbagFrames::open_next_file() {
   return true;
 }
 
-void RosbagFrames::note_losses() {
+void RosbagFrames::record_losses() {
   const McapLosses& losses = file_->losses();
   if (!losses.any() || !missing_.empty()) return;
   std::uint64_t messages = 0;
@@ -110,9 +110,9 @@ void RosbagFrames::scan(const McapMessage& message) {
     const Duration delay = logged(message) - header.stamp;
     if (images.count++ == 0) {
       images.first = header;
-      images.least_delay = delay;
+      images.min_delay = delay;
     }
-    images.least_delay = std::min(images.least_delay, delay);
+    images.min_delay = std::min(images.min_delay, delay);
   } else if (type == k_camera_info_type) {
     infos_.try_emplace(topic, message.payload.begin(), message.payload.end());
   } else if (type == k_tf_type) {
@@ -141,18 +141,19 @@ void RosbagFrames::choose_topics() {
     bright = only([&](const std::string& t) { return t != depth && !is_depth(t); });
   const auto check = [&](const char* key, const std::string& topic) {
     if (!topic.empty() && images_.contains(topic)) return;
-    throw InputError(
-        place(key) + ": " + (topic.empty() ? "none named" : "no image on " + printable(topic)) +
-        "; expected one of the topics with images in " + source_.path + ": " + names_of(images_));
+    throw InputError(key_position(key) + ": " +
+                     (topic.empty() ? "none named" : "no image on " + printable(topic)) +
+                     "; expected one of the topics with images in " + source_.path + ": " +
+                     names_of(images_));
   };
   check("reflectivity_topic", bright);
   check("depth_topic", depth);
   std::string& info = source_.camera_info_topic;
   if (!info.empty() && !infos_.contains(info)) {
-    throw InputError(place("camera_info_topic") + ": no CameraInfo on " + printable(info) +
+    throw InputError(key_position("camera_info_topic") + ": no CameraInfo on " + printable(info) +
                      "; expected one of: " + names_of(infos_));
   }
-  for (const std::string& beside : {camera_info_beside(bright), camera_info_beside(depth)}) {
+  for (const std::string& beside : {camera_info_topic_of(bright), camera_info_topic_of(depth)}) {
     if (info.empty() && infos_.contains(beside)) info = beside;
   }
   if (info.empty() && infos_.size() == 1) info = infos_.begin()->first;
@@ -162,7 +163,7 @@ void RosbagFrames::choose_poses() {
   const std::string& topic = source_.pose_topic;
   if (!topic.empty()) {
     if (!pose_frames_.contains(topic)) {
-      throw InputError(place("pose_topic") + ": no PoseStamped on " + printable(topic) +
+      throw InputError(key_position("pose_topic") + ": no PoseStamped on " + printable(topic) +
                        "; expected the camera's pose there");
     }
     camera_frame_ = camera_of(topic);
@@ -172,14 +173,15 @@ void RosbagFrames::choose_poses() {
   }
   if (camera_frame_.empty()) {
     if (source_.world_frame.empty()) return;
-    throw InputError(place("world_frame") + ": no transforms from the images' frame \"" +
+    throw InputError(key_position("world_frame") + ": no transforms from the images' frame \"" +
                      images_.at(source_.reflectivity_topic).first.frame +
                      "\"; expected them on tf, or a pose_topic");
   }
   world_ = source_.world_frame.empty() ? transforms_.root_of(camera_frame_) : source_.world_frame;
   if (transforms_.root_of(world_) != transforms_.root_of(camera_frame_)) {
-    throw InputError(place("world_frame") + ": \"" + world_ + "\" has no chain of transforms to " +
-                     camera_frame_ + "; expected a frame of its tree, whose root is " +
+    throw InputError(key_position("world_frame") + ": \"" + world_ +
+                     "\" has no chain of transforms to " + camera_frame_ +
+                     "; expected a frame of its tree, whose root is " +
                      transforms_.root_of(camera_frame_));
   }
 }
@@ -228,16 +230,16 @@ bool RosbagFrames::pair_up(Image arrived, ImageKind kind, ReadFrame& frame) {
   return true;
 }
 
-Duration RosbagFrames::least_delay() const {
-  return std::max(images_.at(source_.reflectivity_topic).least_delay,
-                  images_.at(source_.depth_topic).least_delay);
+Duration RosbagFrames::min_delay() const {
+  return std::max(images_.at(source_.reflectivity_topic).min_delay,
+                  images_.at(source_.depth_topic).min_delay);
 }
 
 // Returns true if stamps and log times are of different clocks: a delay is negative, or the
 // smallest delay exceeds the declared one by more than a frame period, impossible for a working
 // camera.
 bool RosbagFrames::clocks_differ() const {
-  const Duration least = least_delay();
+  const Duration least = min_delay();
   return least < Duration{} || least > declared_delay() + camera_.period;
 }
 
@@ -245,7 +247,7 @@ void RosbagFrames::fill(Image reflectivity, Image depth, ReadFrame& frame) const
   frame = ReadFrame{};
   frame.mid_exposure = reflectivity.image.header.stamp;
   frame.arrival = std::max(reflectivity.logged, depth.logged);
-  if (clocks_differ()) frame.arrival = *frame.arrival - least_delay() + declared_delay();
+  if (clocks_differ()) frame.arrival = *frame.arrival - min_delay() + declared_delay();
   if (!world_.empty()) {
     if (const auto pose = transforms_.at(world_, camera_frame_, frame.mid_exposure)) {
       frame.head.valid = true;

@@ -44,7 +44,7 @@ class RosbagFrames final : public FrameReader {
   struct ImageTopic {
     std::uint64_t count = 0;
     RosHeader first;
-    Duration least_delay;  // from a stamp to its log time
+    Duration min_delay;  // from a stamp to its log time
   };
   void scan();
   void scan(const McapMessage& message);
@@ -52,15 +52,17 @@ class RosbagFrames final : public FrameReader {
   void choose_poses();
   [[nodiscard]] std::optional<McapMessage> next_message();
   [[nodiscard]] bool open_next_file();
-  void note_losses();
-  [[nodiscard]] Duration least_delay() const;
+  void record_losses();
+  [[nodiscard]] Duration min_delay() const;
   [[nodiscard]] Duration declared_delay() const {
     return camera_.transport + Duration{camera_.exposure.nanoseconds / 2};
   }
   [[nodiscard]] bool clocks_differ() const;
   [[nodiscard]] bool pair_up(Image arrived, ImageKind kind, ReadFrame& frame);
   void fill(Image reflectivity, Image depth, ReadFrame& frame) const;
-  [[nodiscard]] std::string place(const char* key) const { return source_.place + "." + key; }
+  [[nodiscard]] std::string key_position(const char* key) const {
+    return source_.position + "." + key;
+  }
 
   SourceSettings source_;
   Camera camera_;

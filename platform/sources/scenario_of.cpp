@@ -19,11 +19,11 @@ namespace {
 std::optional<sim::FieldTask> field_task(const std::string& scenario) {
   using sim::FieldTask;
   if (scenario == "field") return FieldTask::work;
-  if (scenario == "field_board") return FieldTask::board;
-  if (scenario == "field_turn") return FieldTask::turn;
+  if (scenario == "field_board") return FieldTask::target;
+  if (scenario == "field_turn") return FieldTask::rotate;
   if (scenario == "field_pivot") return FieldTask::pivot;
-  if (scenario == "field_rest") return FieldTask::rest;
-  if (scenario == "field_look") return FieldTask::look;
+  if (scenario == "field_rest") return FieldTask::still;
+  if (scenario == "field_look") return FieldTask::move_head;
   return {};
 }
 
@@ -32,7 +32,7 @@ std::optional<sim::FieldTask> field_task(const std::string& scenario) {
 sim::Scenario scenario_of(const Cell& cell, const Cell& drawn) {
   Cell device = drawn;
   device.simulator = cell.simulator;
-  device.simulator.drawn.clear();
+  device.simulator.ground_truth_cell.clear();
   sim::Scenario scenario = scenario_of(device);
   // A tool's axes are those of its file, aligned by a rigid fit of the markers.
   for (std::size_t i = 0; i < scenario.tools.size(); ++i) {
@@ -46,14 +46,15 @@ sim::Scenario scenario_of(const Cell& cell, const Cell& drawn) {
     }
     const RigidFit fit = fit_rigid(std::span(stated.markers_m).first(count),
                                    std::span(body.tool.markers_m).first(count));
-    sim::put_tip_at(stated.tip_m, fit.transform.rotation, body);
+    sim::align_to_stated_frame(stated.tip_m, fit.transform.rotation, body);
   }
   return scenario;
 }
 
 sim::Scenario scenario_of(const Cell& cell) {
   const SimulatorSettings& settings = cell.simulator;
-  if (!settings.drawn.empty()) return scenario_of(cell, load_cell(settings.drawn));
+  if (!settings.ground_truth_cell.empty())
+    return scenario_of(cell, load_cell(settings.ground_truth_cell));
   const std::vector<Tool> tools(cell.tools.items.begin(),
                                 cell.tools.items.begin() + cell.tools.count);
   sim::Scenario scenario;

@@ -273,7 +273,7 @@ void ShmSource::take_frame(Producer& producer, const void* message) {
     ++malformed_;
     return;
   }
-  Slot* const slot = room();
+  Slot* const slot = free_slot();
   const bool whole = slot != nullptr && copy_pixels(producer, frame.slot, *slot);
   (void)::send(producer.socket.get(), &frame.slot, sizeof frame.slot, MSG_NOSIGNAL);
   if (producer.sequence && frame.sequence > *producer.sequence) {
@@ -281,7 +281,7 @@ void ShmSource::take_frame(Producer& producer, const void* message) {
   }
   producer.sequence = frame.sequence;
   const Time stamp{frame.stamp_ns};
-  if (!ascends(stamp, newest_stamp_)) return;
+  if (!accept_rising(stamp, newest_stamp_)) return;
   const std::optional<Time> exposure = exposure_of(stamp, arrival);
   if (!exposure) return;
   if (slot == nullptr) return drop();

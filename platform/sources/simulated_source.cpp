@@ -18,7 +18,7 @@ constexpr auto k_poll = std::chrono::microseconds(200);
 constexpr auto k_fill_poll = std::chrono::milliseconds(5);
 constexpr auto k_fill_limit = std::chrono::seconds(30);
 constexpr int k_slots_min = 24;               // half a second at 45 Hz, 1 MB each for AHAT
-constexpr double k_least_ahead_s = 4;         // of frames; a shorter run is rendered completely
+constexpr double k_ahead_min_s = 4;           // of frames; a shorter run is rendered completely
 constexpr double k_memory_part = 0.25;        // of the available memory
 constexpr double k_memory_bytes_max = 1.0e9;  // 21 s of AHAT at 45 Hz
 constexpr unsigned k_renderers_max = 2;
@@ -75,7 +75,7 @@ void SimulatedSource::sleep_until(Time time) const {
 void SimulatedSource::render_all() {
   sim::SimFrame frame;
   for (int i = next_++; i < simulator_.frame_count(); i = next_++) {
-    while (i >= given_back_ + ahead_max_) {
+    while (i >= released_ + ahead_max_) {
       if (stop_) return;
       std::this_thread::sleep_for(k_poll);
     }
@@ -107,7 +107,7 @@ int SimulatedSource::frames_wanted(double frames_a_second) const {
   const double count = simulator_.frame_count();
   const double needed_a_second = count / simulator_.scenario().duration.seconds();
   const double in_time = 0.5 * frames_a_second / needed_a_second;
-  const double ahead = std::max(count * (1 - in_time), k_least_ahead_s * needed_a_second);
+  const double ahead = std::max(count * (1 - in_time), k_ahead_min_s * needed_a_second);
   const double room = static_cast<double>(slots_.size());
   return static_cast<int>(std::min({std::ceil(ahead), room, count}));
 }
@@ -153,7 +153,7 @@ bool SimulatedSource::wait(ArrivedFrame& arrived) {
   return true;
 }
 
-void SimulatedSource::give_back(const ArrivedFrame& /*arrived*/) noexcept { ++given_back_; }
+void SimulatedSource::release_pixels(const ArrivedFrame& /*arrived*/) noexcept { ++released_; }
 
 double SimulatedSource::delivered_part() const noexcept {
   return static_cast<double>(delivered_) / std::max(1, simulator_.frame_count());

@@ -36,7 +36,7 @@ class SimulatedSource final : public FrameSource {
   void start(const SourceClock& clock) override { clock_ = clock; }
 
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
-  void give_back(const ArrivedFrame& arrived) noexcept override;
+  void release_pixels(const ArrivedFrame& arrived) noexcept override;
   [[nodiscard]] bool late(Time now) const noexcept override {
     return now.nanoseconds >= late_since_ns_.load(std::memory_order_relaxed);
   }
@@ -48,8 +48,10 @@ class SimulatedSource final : public FrameSource {
     return simulator_.scenario().duration;
   }
   [[nodiscard]] double delivered_part() const noexcept override;
-  [[nodiscard]] const std::vector<FrameTruth>& truths() const noexcept override { return truths_; }
-  [[nodiscard]] std::optional<Pose> truth_of_tool(int tool, Time time) const override {
+  [[nodiscard]] const std::vector<FrameGroundTruth>& ground_truths() const noexcept override {
+    return truths_;
+  }
+  [[nodiscard]] std::optional<Pose> ground_truth_of_tool(int tool, Time time) const override {
     return simulator_.truth_tool(tool, time);
   }
 
@@ -75,9 +77,9 @@ class SimulatedSource final : public FrameSource {
   SimulatedSourceSettings settings_;
   SourceClock clock_;
   std::vector<Slot> slots_;
-  std::vector<FrameTruth> truths_;
+  std::vector<FrameGroundTruth> truths_;
   std::mutex order_;  // shared by the renderers only
-  std::atomic<int> next_{0}, rendered_count_{0}, delivered_{0}, given_back_{0};
+  std::atomic<int> next_{0}, rendered_count_{0}, delivered_{0}, released_{0};
   std::atomic<int> ahead_max_;                          // frames rendered and not given back
   std::atomic<std::int64_t> late_since_ns_{INT64_MAX};  // due time of the first late frame
   std::atomic<bool> stop_{false};

@@ -6,7 +6,7 @@ namespace glint {
 
 bool StampGate::take(Time stamp) {
   if (stamp > k_stamp_max || stamp.nanoseconds < -k_stamp_max.nanoseconds) {
-    ++counts_.leaps;
+    ++counts_.far_off;
     return false;
   }
   if (!any_) {
@@ -19,14 +19,14 @@ bool StampGate::take(Time stamp) {
     ++counts_.doubled;
     return false;
   }
-  if (gap > Duration{} && gap <= k_leap_max) {
+  if (gap > Duration{} && gap <= k_stamp_step_max) {
     if (gap > k_gap_counted) ++counts_.gaps;
     counts_.longest_gap = std::max(counts_.longest_gap, gap);
   } else if (restarts_at(stamp)) {
     ++counts_.restarts;
     offset_ = offset_ + (newest_ - stamp) + nominal_gap_;
   } else {
-    ++(gap < Duration{} ? counts_.backward : counts_.leaps);
+    ++(gap < Duration{} ? counts_.backward : counts_.far_off);
     return false;
   }
   newest_ = stamp;

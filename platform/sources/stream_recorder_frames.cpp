@@ -195,7 +195,7 @@ void StreamRecorderFrames::read_frame(std::uint64_t stamp, const Pair& pair, Rea
                        " beside it; expected both of a frame");
     }
     const std::string name = prefix_ + ":" + printable(file.name);
-    Picture picture = pgm_of(contents_of(file), name, {k_picture_side_max, k_picture_side_max, 16});
+    Image picture = pgm_of(contents_of(file), name, {k_image_side_max, k_image_side_max, 16});
     return PixelPlane{picture.width, picture.height, std::move(picture.values), name};
   };
   frame = ReadFrame{};

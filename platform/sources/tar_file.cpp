@@ -48,12 +48,12 @@ bool sum_holds(const Bytes& header) {
 
 }  // namespace
 
-std::vector<TarEntry> tar_entries(const InputFile& archive, std::uint64_t& cut_bytes) {
+std::vector<TarEntry> tar_entries(const InputFile& archive, std::uint64_t& truncated_bytes) {
   std::vector<TarEntry> entries;
   std::string long_name;
   Bytes header;
   std::uint64_t at = 0;
-  cut_bytes = 0;
+  truncated_bytes = 0;
   while (archive.size() - at >= k_block) {
     archive.read(at, k_block, header);
     if (std::all_of(header.begin(), header.end(), [](std::uint8_t b) { return b == 0; })) {
@@ -86,7 +86,7 @@ std::vector<TarEntry> tar_entries(const InputFile& archive, std::uint64_t& cut_b
     if (whole > archive.size()) return entries;  // only the padding of the last file is missing
     at = whole;
   }
-  cut_bytes = archive.size() - at;
+  truncated_bytes = archive.size() - at;
   return entries;
 }
 

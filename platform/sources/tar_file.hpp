@@ -17,7 +17,9 @@ struct TarEntry {
 inline constexpr std::size_t k_tar_entries_max = 2'000'000;
 
 // Returns the regular files in the archive's order. A truncated archive ends at its last complete
-// file; `cut_bytes` receives the bytes after it. Throws InputError: path, byte, found, expected.
-[[nodiscard]] std::vector<TarEntry> tar_entries(const InputFile& archive, std::uint64_t& cut_bytes);
+// file; `truncated_bytes` receives the bytes after it. Throws InputError: path, byte, found,
+// expected.
+[[nodiscard]] std::vector<TarEntry> tar_entries(const InputFile& archive,
+                                                std::uint64_t& truncated_bytes);
 
 }  // namespace glint

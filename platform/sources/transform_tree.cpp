@@ -42,7 +42,7 @@ void TransformTree::add(std::string_view parent, std::string_view child, Time ti
       sort(link);
       link.poses.erase(link.poses.begin(), link.poses.begin() + k_live_transforms / 2);
     }
-  } else if (++kept_ > k_transforms_max) {
+  } else if (++stored_ > k_transforms_max) {
     throw InputError("more than " + std::to_string(k_transforms_max) +
                      " transforms; expected a shorter recording");
   }
@@ -135,7 +135,8 @@ std::optional<Pose> TransformTree::at(std::string_view to, std::string_view from
   return T_root_to->inverse() * T_meets_from;
 }
 
-std::optional<Time> TransformTree::known_until(std::string_view to, std::string_view from) const {
+std::optional<Time> TransformTree::available_until(std::string_view to,
+                                                   std::string_view from) const {
   if (root(to) != root(from)) return std::nullopt;
   Time until{INT64_MAX};
   const auto climb = [&](std::string_view frame, std::string_view end) {

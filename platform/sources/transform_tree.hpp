@@ -20,14 +20,14 @@ inline constexpr std::size_t k_transforms_max = 4'000'000;  // stored, 300 MB
 inline constexpr std::size_t k_live_transforms = 1024, k_live_links = 256;
 inline constexpr Duration k_transform_gap_max = milliseconds(500);  // interpolated over
 
-enum class TransformHistory : std::uint8_t { whole, newest };
+enum class TransformHistory : std::uint8_t { full, newest };
 
 class TransformTree {
  public:
-  explicit TransformTree(TransformHistory history = TransformHistory::whole) : history_(history) {}
+  explicit TransformTree(TransformHistory history = TransformHistory::full) : history_(history) {}
 
   // Adds T_parent_child; times may be in any order. A frame keeps its first parent. Counts and
-  // skips a transform that is not rigid or has another parent. With a whole history throws
+  // skips a transform that is not rigid or has another parent. With a full history throws
   // InputError beyond k_transforms_max. With the newest history, heap is allocated only by a link's
   // first transform and by one out of order; a link restarts if its clock is set back by more than
   // k_transform_gap_max.
@@ -41,7 +41,8 @@ class TransformTree {
   // enough in time.
   [[nodiscard]] std::optional<Pose> at(std::string_view to, std::string_view from, Time time) const;
   // Latest time at which at() has all transforms of the chain; empty without a chain.
-  [[nodiscard]] std::optional<Time> known_until(std::string_view to, std::string_view from) const;
+  [[nodiscard]] std::optional<Time> available_until(std::string_view to,
+                                                    std::string_view from) const;
   [[nodiscard]] std::size_t refused() const { return refused_; }
 
  private:
@@ -63,7 +64,7 @@ class TransformTree {
 
   TransformHistory history_;
   std::map<std::string, Link, std::less<>> links_;  // by child
-  std::size_t kept_ = 0, refused_ = 0;
+  std::size_t stored_ = 0, refused_ = 0;
 };
 
 }  // namespace glint

@@ -26,11 +26,11 @@ struct Found {
 Found found_in(const SimulatedScene& scene, int number) {
   Pose start = scene.T_world_base;
   start.translation += Vector3(0.05, -0.04, 0.06);
-  start.rotation = pose_of_seed({0, 0, 0, 0.1, -0.08, 0.12}).rotation * start.rotation;
+  start.rotation = pose_from_xyz_rpy({0, 0, 0, 0.1, -0.08, 0.12}).rotation * start.rotation;
   FindReferenceSettings alone;
-  alone.other_starts = false;
+  alone.search_alternatives = false;
   const Reference reference = find_reference(scene.frames, start, alone);
-  EXPECT_EQ(reference.verdict, ReferenceVerdict::accepted) << number << ": " << reference.why;
+  EXPECT_EQ(reference.verdict, ReferenceVerdict::accepted) << number << ": " << reference.reason;
   const ModelAlignment& end = reference.found.alignment;
   return {1e3 * (end.T_world_base.translation - scene.T_world_base.translation).norm(),
           1e3 * std::sqrt(end.covariance.topLeftCorner<3, 3>().trace())};

@@ -16,8 +16,8 @@ namespace glint {
 namespace {
 
 constexpr double k_points_per_m2 = 2e5;  // long throw at 1 m: ten frames, 6 mm a pixel
-constexpr double k_rms_part_most = 0.30;
-constexpr double k_bias_most_m = 0.0006;
+constexpr double k_rms_ratio_max = 0.30;
+constexpr double k_bias_max_m = 0.0006;
 
 struct Surface {
   std::string name;
@@ -112,8 +112,8 @@ TEST(SmoothingAccuracy, LeavesThreeTenthsOfTheNoiseAndNoBiasOnPlaneSphereAndCyli
           surface.name.c_str(), 1e3 * noise_m, before.n, 1e3 * before.rms_m, 1e3 * after.rms_m,
           after.rms_m / before.rms_m, 1e3 * after.bias_m);
       EXPECT_GT(after.n, 2'000);
-      EXPECT_LE(after.rms_m, k_rms_part_most * before.rms_m) << surface.name << noise_m;
-      EXPECT_LE(std::abs(after.bias_m), k_bias_most_m) << surface.name << noise_m;
+      EXPECT_LE(after.rms_m, k_rms_ratio_max * before.rms_m) << surface.name << noise_m;
+      EXPECT_LE(std::abs(after.bias_m), k_bias_max_m) << surface.name << noise_m;
     }
   }
 }

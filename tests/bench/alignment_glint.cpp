@@ -15,7 +15,7 @@ struct Stage {
   int step;
 };
 constexpr Stage k_stages[] = {{1, 16}, {0.5, 8}, {0.25, 4}, {0.125, 2}};
-constexpr int k_steps_most = 60;
+constexpr int k_iterations_max = 60;
 
 Vector3f point_of(const float* xyz, int i) { return {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}; }
 
@@ -32,7 +32,7 @@ void CloudAlignment::run(const AlignmentTask& task, Matching matching, Alignment
   for (int i = 0; i < task.target_count; ++i) target_.push_back(point_of(task.target, i));
   const double begin = thread_seconds();
   const AlignmentSettings rest;
-  const SceneView no_picture{};  // no occlusion
+  const SceneView no_depth_image{};  // no occlusion
   Pose T;
   for (const Stage& stage : k_stages) {
     const double gate_m = stage.part * static_cast<double>(task.reach_m);
@@ -44,17 +44,17 @@ void CloudAlignment::run(const AlignmentTask& task, Matching matching, Alignment
       middle += some_.back().point.cast<double>();
     }
     middle /= static_cast<double>(some_.size());
-    for (int step = 0; step < k_steps_most; ++step) {
+    for (int step = 0; step < k_iterations_max; ++step) {
       AlignmentSums sums;
       const Vector3 about = T * middle;
-      add_pairs(some_, T, matching, gate_m, no_picture, {&grid_, target_}, Quaternion::Identity(),
-                about, sums);
+      add_pairs(some_, T, matching, gate_m, no_depth_image, {&grid_, target_},
+                Quaternion::Identity(), about, sums);
       const Result<AlignmentStep> found = solve(sums);
       if (!found) break;
       T = moved(T, found.value, about);
       const double still = stage.step > 1 ? gate_m / 50 : 0;
-      if (found.value.shift.norm() < std::max(still, rest.rest_shift_m) &&
-          found.value.turn.norm() < std::max(still, rest.rest_turn_rad)) {
+      if (found.value.translation.norm() < std::max(still, rest.convergence_translation_m) &&
+          found.value.rotation.norm() < std::max(still, rest.convergence_rotation_rad)) {
         break;
       }
     }

@@ -17,7 +17,7 @@ class CloudAlignment {
 
  private:
   PointGrid grid_;
-  std::vector<SeenPoint> some_;
+  std::vector<VisiblePoint> some_;
   std::vector<Vector3f> target_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double k_shift_m = 0.09, k_turn_deg = 5;
 constexpr float k_reach_m = 0.15f;
-constexpr double k_ratio_least = 5;
+constexpr double k_speedup_min = 5;
 constexpr int k_source_every = 4;
 
 struct Clouds {
@@ -75,7 +75,7 @@ struct Row {
 
 }  // namespace
 
-bool race_alignments(const PointCloud& surface, RunAlignment rival, int rounds) {
+bool benchmark_alignments(const PointCloud& surface, RunAlignment rival, int rounds) {
   const Clouds clouds = part(surface);
   const AlignmentTask task{clouds.source.data(),
                            clouds.normals.data(),
@@ -111,7 +111,7 @@ bool race_alignments(const PointCloud& surface, RunAlignment rival, int rounds) 
   print("Glint, point to plane", plane);
   if (rival == nullptr) return true;
   const double ratio = pcl.median_ms() / plane.median_ms();
-  const bool met = ratio >= k_ratio_least && plane.error_m <= pcl.error_m;
+  const bool met = ratio >= k_speedup_min && plane.error_m <= pcl.error_m;
   std::printf("  PCL / Glint, at an error no larger %17.1f x   bar: >= 5         %s\n", ratio,
               met ? "met" : "MISSED");
   return met;

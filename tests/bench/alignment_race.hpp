@@ -9,6 +9,6 @@ namespace glint::bench {
 
 // surface: points with normals. Without `rival` only Glint's rows are measured. Returns false if a
 // limit is missed.
-[[nodiscard]] bool race_alignments(const PointCloud& surface, RunAlignment rival, int rounds);
+[[nodiscard]] bool benchmark_alignments(const PointCloud& surface, RunAlignment rival, int rounds);
 
 }  // namespace glint::bench

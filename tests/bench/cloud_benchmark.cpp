@@ -26,10 +26,10 @@ namespace {
 constexpr CloudStepSettings k_settings{0.01f, 0.05f, 0.03f, 0.01f, 9};
 constexpr std::array<const char*, k_cloud_steps> k_names = {
     "voxel grid, 1 cm", "outliers, 9 in 5 cm", "smoothing, 3 cm, order 2", "largest plane"};
-constexpr double k_chain_least = 6;
-constexpr double k_same_voxels_least = 0.9999;
-constexpr double k_centroid_most_m = 1e-5;
-constexpr double k_smooth_most_m = 5e-5;
+constexpr double k_chain_speedup_min = 6;
+constexpr double k_same_voxels_min = 0.9999;
+constexpr double k_centroid_distance_max_m = 1e-5;
+constexpr double k_smoothed_distance_max_m = 5e-5;
 
 // Points of five depth images of one camera, every fourth pixel, up to two metres.
 std::vector<float> scan_points(const std::filesystem::path& folder) {
@@ -51,7 +51,7 @@ std::vector<float> scan_points(const std::filesystem::path& folder) {
         read_npy_float32((folder / ("depth_" + std::to_string(i) + ".npy")).string());
     camera.height = static_cast<int>(depth.shape.at(0));
     camera.width = static_cast<int>(depth.shape.at(1));
-    const DepthPicture picture{camera.width, camera.height, depth.values};
+    const DepthImageView picture{camera.width, camera.height, depth.values};
     add_depth_points(picture, camera, Pose{}, settings, 0, pixels_of(picture, settings.stride),
                      points, dropped);
   }
@@ -63,11 +63,11 @@ std::vector<float> scan_points(const std::filesystem::path& folder) {
 }
 
 // Both are null without PCL.
-struct Rival {
+struct PclLibrary {
   RunCloudSteps steps = nullptr;
   RunAlignment alignment = nullptr;
 };
-Rival load_rival() {
+PclLibrary load_pcl() {
   const std::string file =
       (std::filesystem::canonical("/proc/self/exe").parent_path() / GLINT_BENCH_PCL).string();
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -119,23 +119,23 @@ bool compare(Side& glint, Side& pcl) {
                 glint.counts[i]);
   }
   std::printf("  %-28s %10.2f %10.2f %6.1fx\n", "chain", sums[0], sums[1], sums[0] / sums[1]);
-  const Agreement voxels = agreement_of(glint.points[0], pcl.points[0], k_centroid_most_m);
-  const Agreement kept = agreement_of(glint.points[1], pcl.points[1], k_centroid_most_m);
+  const Agreement voxels = agreement_of(glint.points[0], pcl.points[0], k_centroid_distance_max_m);
+  const Agreement kept = agreement_of(glint.points[1], pcl.points[1], k_centroid_distance_max_m);
   const Agreement smooth = agreement_of(glint.points[2], pcl.points[2], 1);
   bool met = print_bar("PCL / Glint, the whole chain", sums[0] / sums[1], "x", ">= 6",
-                       sums[0] / sums[1] >= k_chain_least);
+                       sums[0] / sums[1] >= k_chain_speedup_min);
   met &= print_bar("same voxels, centroids within 0.01 mm", voxels.share, "", ">= 0.9999",
-                   voxels.share >= k_same_voxels_least);
+                   voxels.share >= k_same_voxels_min);
   met &=
-      print_bar("same points kept", kept.share, "", ">= 0.9999", kept.share >= k_same_voxels_least);
+      print_bar("same points kept", kept.share, "", ">= 0.9999", kept.share >= k_same_voxels_min);
   met &= print_bar(
       "voxels' and kept points' counts differ by",
       std::abs(pcl.counts[0] - glint.counts[0]) + std::abs(pcl.counts[1] - glint.counts[1]), "",
       "0", pcl.counts[0] == glint.counts[0] && pcl.counts[1] == glint.counts[1]);
   met &= print_bar("smoothed points with a partner", smooth.share, "", ">= 0.9999",
-                   smooth.share >= k_same_voxels_least);
+                   smooth.share >= k_same_voxels_min);
   met &= print_bar("their distance, p99", 1e3 * smooth.p99_m, "mm", "<= 0.05",
-                   smooth.p99_m <= k_smooth_most_m);
+                   smooth.p99_m <= k_smoothed_distance_max_m);
   return met;
 }
 
@@ -152,26 +152,26 @@ int run(int rounds) {
   }
   const std::vector<float> xyz = scan_points(folder);
   const int count = static_cast<int>(xyz.size() / 3);
-  const Rival rival = load_rival();
+  const PclLibrary library = load_pcl();
   CloudChain chain(k_settings, count);
   Side glint, pcl;
   for (int round = 0; round <= rounds; ++round) {  // round 0 is the warm-up
     glint.once([&](CloudStepResult& r) { chain.run(xyz.data(), count, r); }, count, round > 0);
-    if (rival.steps != nullptr) {
-      pcl.once([&](CloudStepResult& r) { rival.steps(xyz.data(), count, k_settings, r); }, count,
+    if (library.steps != nullptr) {
+      pcl.once([&](CloudStepResult& r) { library.steps(xyz.data(), count, k_settings, r); }, count,
                round > 0);
     }
   }
   std::printf("%d points, one thread, processor time, median of %d rounds in turn\n  %s\n", count,
               rounds, GLINT_BENCH_FLAGS);
-  if (rival.steps != nullptr) {
+  if (library.steps != nullptr) {
     const bool alike = compare(glint, pcl);
-    return race_alignments(chain.smoothed(), rival.alignment, rounds) && alike ? 0 : 1;
+    return benchmark_alignments(chain.smoothed(), library.alignment, rounds) && alike ? 0 : 1;
   }
   for (std::size_t i = 0; i < k_cloud_steps; ++i) {
     std::printf("  %-28s %10.2f ms %10d\n", k_names[i], glint.median_ms(i), glint.counts[i]);
   }
-  (void)race_alignments(chain.smoothed(), nullptr, rounds);
+  (void)benchmark_alignments(chain.smoothed(), nullptr, rounds);
   std::printf("libpcl-dev was not there when this was built: no rival\n");
   return 0;
 }

@@ -22,9 +22,9 @@ constexpr int k_untimed_activations = 4096;
 constexpr int k_traced_activations = 64;
 constexpr int k_tbb_activations = 16;
 
-constexpr double k_untimed_most_ns = 2;
-constexpr double k_traced_most_ns = 60;
-constexpr double k_below_tbb_least = 30;
+constexpr double k_untimed_max_ns = 2;
+constexpr double k_traced_max_ns = 60;
+constexpr double k_tbb_ratio_min = 30;
 
 // Makes the compiler assume that the object is read and written between two activations.
 template <class T>
@@ -80,9 +80,9 @@ bool run(int rounds) {
   print_machine();
   print_rows(rows);
   const double called = rows[3].p50(), traced = rows[5].p50(), tbb = rows[6].p50();
-  bool met = print_bar("untimed node, called", called, "ns", k_untimed_most_ns, true);
-  met &= print_bar("timed and traced node, called", traced, "ns", k_traced_most_ns, true);
-  met &= print_bar("oneTBB / untimed node", tbb / called, "x", k_below_tbb_least, false);
+  bool met = print_bar("untimed node, called", called, "ns", k_untimed_max_ns, true);
+  met &= print_bar("timed and traced node, called", traced, "ns", k_traced_max_ns, true);
+  met &= print_bar("oneTBB / untimed node", tbb / called, "x", k_tbb_ratio_min, false);
   return met;
 }
 

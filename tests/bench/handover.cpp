@@ -18,8 +18,8 @@ struct alignas(64) Ball {
 
 }  // namespace
 
-std::int64_t measured_handover_ns(int from, int to) {
-  become({"there", from, 0});
+std::int64_t measured_core_delay_ns(int from, int to) {
+  apply_settings({"there", from, 0});
   Ball there, back;
   std::vector<double> ns;
   RealTimeThread other({"back", to, 0}, [&] {

@@ -45,7 +45,7 @@ void threshold_in(benchmark::State& state, bool whole) {
     benchmark::DoNotOptimize(runs->count);
   }
 }
-void threshold_whole(benchmark::State& state) { threshold_in(state, true); }
+void threshold_full_frame(benchmark::State& state) { threshold_in(state, true); }
 void threshold_roi(benchmark::State& state) { threshold_in(state, false); }
 
 void blobs(benchmark::State& state) {
@@ -69,7 +69,7 @@ void back_projection(benchmark::State& state) {
   Warm warm(sensor_of(state));
   const Blobs& found = warm.token<Blobs>();
   const BackProject& node = warm.chain.tracker().node<BackProject>();
-  const SphereShift shift = sphere_shift(node.camera);
+  const SphereOffset shift = sphere_offset(node.camera);
   Marker marker;
   for (auto _ : state) {
     for (int i = 0; i < found.count; ++i) {
@@ -114,10 +114,9 @@ void rigid_fit(benchmark::State& state) {
 }
 
 void prediction(benchmark::State& state) {
-  const StampedPose a{Time{0},
-                      {Quaternion(0.8, 0.3, -0.4, 0.2).normalized(), Vector3(0.1, 0, 0.5)}};
-  const StampedPose b{Time{22'000'000},
-                      {Quaternion(0.8, 0.32, -0.41, 0.2).normalized(), Vector3(0.11, 0, 0.5)}};
+  const TimedPose a{Time{0}, {Quaternion(0.8, 0.3, -0.4, 0.2).normalized(), Vector3(0.1, 0, 0.5)}};
+  const TimedPose b{Time{22'000'000},
+                    {Quaternion(0.8, 0.32, -0.41, 0.2).normalized(), Vector3(0.11, 0, 0.5)}};
   std::int64_t time = 22'000'000;
   for (auto _ : state) {
     Pose pose = extrapolate(a, b, Time{++time}, milliseconds(60));
@@ -125,7 +124,7 @@ void prediction(benchmark::State& state) {
   }
 }
 
-BENCHMARK(threshold_whole)->Name("kernel/roi_threshold/whole_frame")->Arg(8)->Arg(16);
+BENCHMARK(threshold_full_frame)->Name("kernel/roi_threshold/whole_frame")->Arg(8)->Arg(16);
 BENCHMARK(threshold_roi)->Name("kernel/roi_threshold/roi")->Arg(8)->Arg(16);
 BENCHMARK(blobs)->Name("kernel/find_blobs")->Arg(8)->Arg(16);
 BENCHMARK(back_projection)->Name("kernel/measure_marker/all_blobs")->Arg(8)->Arg(16);

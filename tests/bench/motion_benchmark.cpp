@@ -14,7 +14,7 @@ namespace {
 
 constexpr Duration k_gap = {22'222'222};
 constexpr Duration k_ahead = milliseconds(25);
-constexpr int k_swings = 90;  // 2 s of frames, four periods
+constexpr int k_swing_frames = 90;  // 2 s of frames, four periods
 
 // A tool that swings 50 mm in each direction at 2 Hz, with declared noise of 1 mm and 0.3 degrees;
 // or a static tool.
@@ -43,17 +43,17 @@ void filter_and_predict(benchmark::State& state) {
   }
   int frame = 0;
   // Until the static window has its maximal length.
-  for (; frame < 4 * k_swings; ++frame) (void)motion->update(seen(frame, moving));
+  for (; frame < 4 * k_swing_frames; ++frame) (void)motion->update(seen(frame, moving));
   for (auto _ : state) {
     benchmark::DoNotOptimize(motion->update(seen(++frame, moving)));
     const MotionState now = motion->estimate();
     const Time then = now.time + k_ahead;
     const MovingPose pose = integrator.after(now, k_ahead).value;
-    const UncertainPose sure =
+    const UncertainPose predicted =
         predict_pose(now, then, motion->settings.motion, motion->noise_scale());
-    benchmark::DoNotOptimize(pose.pose.translation.sum() + sure.covariance.sum());
+    benchmark::DoNotOptimize(pose.pose.translation.sum() + predicted.covariance.sum());
   }
-  state.counters["rests"] = motion->rests() ? 1 : 0;
+  state.counters["rests"] = motion->is_static() ? 1 : 0;
 }
 
 // Both nodes of a tick: all sixteen tools have a pose, and CAN's periodic frames are due.

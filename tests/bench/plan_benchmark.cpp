@@ -28,12 +28,12 @@ namespace glint::bench {
 namespace {
 
 constexpr int k_rounds = 600;
-constexpr CrowdPoint k_crowd{k_tools_max, 20};
+constexpr DenseScenePoint k_crowd{k_tools_max, 20};
 constexpr int k_cores = 2;
 constexpr std::uint32_t k_spins_max = 100'000;
 
-constexpr double k_plan_part_most = 0.65;
-constexpr double k_beside_plan_most = 0.15;
+constexpr double k_makespan_ratio_max = 0.65;
+constexpr double k_makespan_error_max = 0.15;
 
 // Execution time of each node in the newest activation.
 class NodeTimes {
@@ -70,13 +70,13 @@ TaskGroup group_of(const Times& ns_of) {
 using Medians = std::array<double, static_cast<std::size_t>(Tracker::node_count)>;
 
 // Median execution time of each node on this core.
-Medians medians_on(int core, CrowdKernel& crowd, int rounds) {
+Medians medians_on(int core, DenseSceneKernel& crowd, int rounds) {
   std::vector<std::vector<double>> ns(static_cast<std::size_t>(Tracker::node_count));
   {
     const RealTimeThread thread({"bench", core, k_frame_priority}, [&] {
       for (int round = 0; round < rounds; ++round) {
         NodeTimes times;
-        crowd.show(static_cast<std::uint64_t>(round));
+        crowd.set_frame(static_cast<std::uint64_t>(round));
         crowd.tracker().activate(times);
         for (int node = 0; node < Tracker::node_count; ++node) {
           ns[static_cast<std::size_t>(node)].push_back(times.of(node));
@@ -91,8 +91,8 @@ Medians medians_on(int core, CrowdKernel& crowd, int rounds) {
 
 // Ratio of each node's time on its core to its time on core 0. On a shared machine, other load may
 // slow one core only.
-Medians slower_on_its_core(const graph::PlanTables<Tracker>& tables, CrowdKernel& crowd,
-                           int rounds) {
+Medians core_time_ratios(const graph::ScheduleTables<Tracker>& tables, DenseSceneKernel& crowd,
+                         int rounds) {
   const Medians first = medians_on(0, crowd, rounds), second = medians_on(1, crowd, rounds);
   Medians factor;
   factor.fill(1);
@@ -103,9 +103,9 @@ Medians slower_on_its_core(const graph::PlanTables<Tracker>& tables, CrowdKernel
   return factor;
 }
 
-graph::PlanTables<Tracker> tables_of(const CoreOrders& orders) {
+graph::ScheduleTables<Tracker> tables_of(const CoreOrders& orders) {
   // Worker 0 must start with the graph's first node.
-  graph::PlanTables<Tracker> tables;
+  graph::ScheduleTables<Tracker> tables;
   tables.workers = k_cores;
   const bool first = !orders[0].empty() && orders[0][0] == 0;
   for (int worker = 0; worker < k_cores; ++worker) {
@@ -117,18 +117,18 @@ graph::PlanTables<Tracker> tables_of(const CoreOrders& orders) {
 
 // Keeps a core out of its idle states, whose wake-up latency exceeds the execution time of the
 // nodes; a real-time computer disables them. Every other thread has priority over it.
-class Awake {
+class IdleSpinner {
  public:
-  explicit Awake(int core)
+  explicit IdleSpinner(int core)
       : thread_({"awake", core, 0}, [this] {
           const sched_param least{};
           (void)sched_setscheduler(0, SCHED_IDLE, &least);
-          const WorkerRest rest({}, 0);
+          const WorkerWaitPolicy rest({}, 0);
           while (!stop_.load(std::memory_order_relaxed)) rest.spin();
         }) {}
-  ~Awake() { stop_.store(true, std::memory_order_relaxed); }
-  Awake(const Awake&) = delete;
-  Awake& operator=(const Awake&) = delete;
+  ~IdleSpinner() { stop_.store(true, std::memory_order_relaxed); }
+  IdleSpinner(const IdleSpinner&) = delete;
+  IdleSpinner& operator=(const IdleSpinner&) = delete;
 
  private:
   std::atomic<bool> stop_{false};
@@ -136,17 +136,17 @@ class Awake {
 };
 
 bool run(int rounds) {
-  become({"bench", 0, k_frame_priority});
+  apply_settings({"bench", 0, k_frame_priority});
   const std::vector<ThreadSettings> others{{"bench 2", 1, k_frame_priority}};
-  CrowdKernel crowd(k_crowd);
+  DenseSceneKernel crowd(k_crowd);
   const Medians typical = medians_on(0, crowd, rounds);
   const TaskGroup group =
       group_of([&](int node) { return typical[static_cast<std::size_t>(node)]; });
-  const std::int64_t handover_ns = measured_handover_ns(0, 1);
-  const Awake awake(1);
-  const ExactSchedule plan = exact_schedule(group, k_cores, handover_ns);
-  const graph::PlanTables<Tracker> tables = tables_of(plan.orders);
-  const Medians slower = slower_on_its_core(tables, crowd, rounds);
+  const std::int64_t inter_core_delay_ns = measured_core_delay_ns(0, 1);
+  const IdleSpinner spinner(1);
+  const ExactSchedule plan = exact_schedule(group, k_cores, inter_core_delay_ns);
+  const graph::ScheduleTables<Tracker> tables = tables_of(plan.orders);
+  const Medians slower = core_time_ratios(tables, crowd, rounds);
   PlannedExecutor<Tracker> executor(tables, others, k_spins_max);
 
   // Each round predicts the makespan from the nodes' times on one core in the same round, so that a
@@ -155,18 +155,18 @@ bool run(int rounds) {
   for (int round = 0; round < rounds; ++round) {
     const auto frame = static_cast<std::uint64_t>(round);
     NodeTimes times;
-    crowd.show(frame);
+    crowd.set_frame(frame);
     one_us.push_back(microseconds_of([&] { crowd.tracker().activate(times); }));
     const TaskGroup now =
         group_of([&](int node) { return times.of(node) * slower[static_cast<std::size_t>(node)]; });
-    plan_us.push_back(static_cast<double>(times_of(now, plan.orders, handover_ns)->makespan_ns) *
-                      1e-3);
-    crowd.show(frame);
+    plan_us.push_back(
+        static_cast<double>(times_of(now, plan.orders, inter_core_delay_ns)->makespan_ns) * 1e-3);
+    crowd.set_frame(frame);
     two_us.push_back(microseconds_of([&] {
       std::array<graph::NoTrace, k_cores> untraced;
       graph::NoBoundary always;
       (void)executor.execute(crowd.tracker(), std::span<graph::NoTrace>(untraced), always);
-      executor.settle(crowd.tracker());
+      executor.finish_activation(crowd.tracker());
     }));
     beside.push_back(two_us.back() / plan_us.back() - 1);
   }
@@ -174,14 +174,14 @@ bool run(int rounds) {
   const double one = percentile(one_us, 0.5), planned = percentile(plan_us, 0.5);
   print_machine();
   std::printf("%d tools, %d strays, %d rounds; a hand-over takes %lld ns; the plan is %s\n",
-              k_crowd.tools, k_crowd.strays, rounds, static_cast<long long>(handover_ns),
+              k_crowd.tools, k_crowd.strays, rounds, static_cast<long long>(inter_core_delay_ns),
               plan.optimal ? "optimal" : "not proven optimal");
   std::printf("one core    observed median %8.1f us\n", one);
   std::printf("two cores   planned         %8.1f us   observed median %8.1f us\n", planned,
               percentile(two_us, 0.5));
-  bool met = print_bar("plan / one core", planned / one, "", k_plan_part_most, true);
+  bool met = print_bar("plan / one core", planned / one, "", k_makespan_ratio_max, true);
   met &= print_bar("observed beside the plan, median of the rounds",
-                   std::abs(percentile(beside, 0.5)), "", k_beside_plan_most, true);
+                   std::abs(percentile(beside, 0.5)), "", k_makespan_error_max, true);
   return met;
 }
 

@@ -15,9 +15,9 @@ namespace {
 
 constexpr int k_rounds = 15;
 constexpr int k_frames_a_round = 64;
-constexpr double k_front_end_most = 110;  // multiples of a plain threshold pass, 448x450 8 bit
-constexpr double k_with_roi_least = 20;
-constexpr double k_whole_frame_least = 8;
+constexpr double k_front_end_ratio_max = 110;  // multiples of a plain threshold pass, 448x450 8 bit
+constexpr double k_roi_speedup_min = 20;
+constexpr double k_full_frame_speedup_min = 8;
 
 // CPU time of this thread: other load on the machine hardly changes it.
 double thread_seconds() {
@@ -54,10 +54,10 @@ std::vector<Row> rows_of(const Sensor& sensor) {
   SeedSettings everywhere;
   everywhere.use_roi = false;
   SeedSettings roi_alone, points_alone;
-  roi_alone.undistortion = SeedUndistortion::roi;
-  points_alone.undistortion = SeedUndistortion::points;
+  roi_alone.undistortion = BaselineUndistortion::roi;
+  points_alone.undistortion = BaselineUndistortion::points;
   const auto seed = [&](const SeedSettings& settings) {
-    return std::make_shared<SeedTracker>(sensor.camera, sensor.tool, settings);
+    return std::make_shared<BaselineTracker>(sensor.camera, sensor.tool, settings);
   };
   const auto glint = [&](SearchArea area) {
     return std::make_shared<GlintChain>(sensor.camera, sensor.tool, area);
@@ -73,9 +73,10 @@ std::vector<Row> rows_of(const Sensor& sensor) {
                   [plane, threshold, out = cv::Mat()]() mutable {
                     cv::threshold(plane, out, threshold, 255, cv::THRESH_BINARY);
                   }});
-  rows.push_back(make_row(
-      "seed front end", sensor, seed({}),
-      [](SeedTracker& tracker, const Player& player) { (void)tracker.front_end(player.frame()); }));
+  rows.push_back(make_row("seed front end", sensor, seed({}),
+                          [](BaselineTracker& tracker, const Player& player) {
+                            (void)tracker.front_end(player.frame());
+                          }));
   rows.push_back(make_row("seed, whole frame", sensor, seed(everywhere), track));
   rows.push_back(make_row("seed, ROI", sensor, seed({}), track));
   rows.push_back(make_row("Glint, whole frame", sensor, glint(SearchArea::whole_frame), track));
@@ -123,11 +124,11 @@ bool print_ratios() {
       std::printf("  %-52s %9.2f us a frame\n", row.name.c_str(), row.median_us);
     const auto us = [&](int row) { return rows[static_cast<std::size_t>(row)].median_us; };
     if (sensor->camera.reflectivity_bits == 8)
-      met &=
-          print_bar("seed front end / plain cv::threshold", us(1) / us(0), k_front_end_most, true);
-    met &= print_bar("seed / Glint, both with ROI", us(3) / us(5), k_with_roi_least, false);
-    met &= print_bar("seed / Glint, both on the whole frame", us(2) / us(4), k_whole_frame_least,
-                     false);
+      met &= print_bar("seed front end / plain cv::threshold", us(1) / us(0), k_front_end_ratio_max,
+                       true);
+    met &= print_bar("seed / Glint, both with ROI", us(3) / us(5), k_roi_speedup_min, false);
+    met &= print_bar("seed / Glint, both on the whole frame", us(2) / us(4),
+                     k_full_frame_speedup_min, false);
     print_ratio("seed that remaps the ROI alone / Glint with ROI", us(6) / us(5));
     print_ratio("seed on the raw ROI, less work / Glint with ROI", us(7) / us(5));
   }

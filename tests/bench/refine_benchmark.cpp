@@ -25,7 +25,7 @@ struct View {
 
 std::vector<View> views_of(const PointTool& tool) {
   const Camera camera = ahat_ray_table();
-  const SightNoise noise{0.1, 0.002};
+  const ObservationNoise noise{0.1, 0.002};
   std::vector<View> views;
   for (std::uint64_t sample = 0; sample < k_views; ++sample) {
     SampleNumbers numbers(1, 0, sample);
@@ -38,8 +38,8 @@ std::vector<View> views_of(const PointTool& tool) {
       if (!points.add(camera, tool.tool, pose * model, i, noise, numbers)) continue;
       const auto at = static_cast<std::size_t>(points.markers.count - 1);
       const double range = points.markers.items[at].surface_range_m + tool.tool.centre_offset_m();
-      const MarkerSight& sight = points.sights[at];
-      view.markers.push_back(weigh_marker(model, sight.rays, range, sight.variance).value);
+      const MarkerMeasurementModel& sight = points.sights[at];
+      view.markers.push_back(whiten_marker(model, sight.rays, range, sight.variance).value);
       view.model.push_back(model);
       view.measured.push_back(view.markers.back().measured_m());
       view.covariances.push_back(

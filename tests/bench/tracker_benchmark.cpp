@@ -23,7 +23,7 @@ void report_rate(benchmark::State& state, int tracked) {
 }
 
 void seed_front_end(benchmark::State& state) {
-  SeedTracker tracker(sensor_of(state).camera, sensor_of(state).tool);
+  BaselineTracker tracker(sensor_of(state).camera, sensor_of(state).tool);
   Player player(sensor_of(state));
   for (auto _ : state) {
     player.next();
@@ -34,7 +34,7 @@ void seed_front_end(benchmark::State& state) {
 void seed_chain(benchmark::State& state, bool roi) {
   SeedSettings settings;
   settings.use_roi = roi;
-  SeedTracker tracker(sensor_of(state).camera, sensor_of(state).tool, settings);
+  BaselineTracker tracker(sensor_of(state).camera, sensor_of(state).tool, settings);
   Player player(sensor_of(state));
   int tracked = 0;
   for (auto _ : state) {
@@ -43,7 +43,7 @@ void seed_chain(benchmark::State& state, bool roi) {
   }
   report_rate(state, tracked);
 }
-void seed_whole(benchmark::State& state) { seed_chain(state, false); }
+void baseline_full_frame(benchmark::State& state) { seed_chain(state, false); }
 void seed_roi(benchmark::State& state) { seed_chain(state, true); }
 
 void glint_chain(benchmark::State& state, SearchArea area) {
@@ -56,7 +56,7 @@ void glint_chain(benchmark::State& state, SearchArea area) {
   }
   report_rate(state, tracked);
 }
-void glint_whole(benchmark::State& state) { glint_chain(state, SearchArea::whole_frame); }
+void glint_full_frame(benchmark::State& state) { glint_chain(state, SearchArea::whole_frame); }
 void glint_roi(benchmark::State& state) { glint_chain(state, SearchArea::predicted); }
 
 void plain_threshold(benchmark::State& state) {
@@ -75,9 +75,9 @@ void plain_threshold(benchmark::State& state) {
 
 BENCHMARK(plain_threshold)->Name("plain_cv_threshold")->Arg(8)->Arg(16);
 BENCHMARK(seed_front_end)->Name("seed/front_end")->Arg(8)->Arg(16);
-BENCHMARK(seed_whole)->Name("seed/chain/whole_frame")->Arg(8)->Arg(16);
+BENCHMARK(baseline_full_frame)->Name("seed/chain/whole_frame")->Arg(8)->Arg(16);
 BENCHMARK(seed_roi)->Name("seed/chain/roi")->Arg(8)->Arg(16);
-BENCHMARK(glint_whole)->Name("glint/chain/whole_frame")->Arg(8)->Arg(16);
+BENCHMARK(glint_full_frame)->Name("glint/chain/whole_frame")->Arg(8)->Arg(16);
 BENCHMARK(glint_roi)->Name("glint/chain/roi")->Arg(8)->Arg(16);
 
 }  // namespace

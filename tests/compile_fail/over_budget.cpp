@@ -2,4 +2,4 @@
 #include "budget.hpp"
 
 struct FrameChain : FrameUntil<6'221> {};
-static_assert(fits<k_board, k_limits, TickChain, FrameChain>);
+static_assert(meets_deadlines<k_board, k_limits, TickChain, FrameChain>);

@@ -9,4 +9,4 @@ inline constexpr std::array<KernelCost, 3> k_stale = {{
 inline constexpr CostTable k_stale_board = {"bench", "any", "none", k_stale};
 
 struct FrameChain : FrameUntil<20'000> {};
-static_assert(fits<k_stale_board, k_limits, TickChain, FrameChain>);
+static_assert(meets_deadlines<k_stale_board, k_limits, TickChain, FrameChain>);

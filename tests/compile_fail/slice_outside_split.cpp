@@ -1,4 +1,4 @@
-// expect: SliceOutsideSplit<ThresholdBand
+// expect: PartitionOutsideSplit<ThresholdBand
 #include "tokens.hpp"
 
 using Tracker = Graph<Inputs<Frame>, Outputs<Runs>, ThresholdBand>;

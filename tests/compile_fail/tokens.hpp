@@ -15,7 +15,7 @@ struct Threshold {
   void operator()(const Frame&, Runs&) noexcept {}
 };
 struct ThresholdBand {
-  void operator()(const Frame&, Slice, Runs&) noexcept {}
+  void operator()(const Frame&, Partition, Runs&) noexcept {}
 };
 struct FindBlobs {
   void operator()(const Runs&, Blobs&) noexcept {}

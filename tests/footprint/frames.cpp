@@ -30,45 +30,45 @@ PlayedFrame painted(const CameraModel& camera, const std::function<bool(int x, i
   return frame;
 }
 
-Play make_play() {
-  Play play;
+TestFrames make_test_frames() {
+  TestFrames frames;
   const ToolSet tools = sim::crowd_of_tools(k_tools_max, 1);
   const sim::Scenario scenario = sim::crowded_run(tools, k_strays, 1);
   const sim::Simulator simulator(scenario);
-  play.cell = default_cell();
-  set_camera(play.cell, scenario.camera);
-  play.cell.tools = tools;
+  frames.cell = default_cell();
+  set_camera(frames.cell, scenario.camera);
+  frames.cell.tools = tools;
   // The largest budget, so that every loop can run to its maximum.
-  play.cell.budget = {.tools = k_tools_max,
-                      .blobs = k_blobs_max,
-                      .runs_per_band = k_runs_per_band_max,
-                      .search_steps = k_search_steps_max};
+  frames.cell.budget = {.tools = k_tools_max,
+                        .blobs = k_blobs_max,
+                        .runs_per_band = k_runs_per_band_max,
+                        .search_steps = k_search_steps_max};
   sim::SimFrame rendered;
   for (int i = 0; i < k_crowd_frames; ++i) {
     simulator.render(i, rendered);
-    play.crowd.push_back({rendered.pixels, rendered.head});
+    frames.crowd.push_back({rendered.pixels, rendered.head});
   }
-  const CameraModel& camera = play.cell.camera.model;
+  const CameraModel& camera = frames.cell.camera.model;
   // A checkerboard (a run every second pixel); all bright; all dark; discs that fill every blob.
-  play.worst.push_back(painted(camera, [](int x, int y) { return (x + y) % 2 == 0; }));
-  play.worst.push_back(painted(camera, [](int, int) { return true; }));
-  play.worst.push_back(painted(camera, [](int, int) { return false; }));
-  play.worst.push_back(painted(camera, [](int x, int y) {
+  frames.worst.push_back(painted(camera, [](int x, int y) { return (x + y) % 2 == 0; }));
+  frames.worst.push_back(painted(camera, [](int, int) { return true; }));
+  frames.worst.push_back(painted(camera, [](int, int) { return false; }));
+  frames.worst.push_back(painted(camera, [](int x, int y) {
     const int dx = x % 24 - 12, dy = y % 24 - 12;
     return dx * dx + dy * dy <= 36;
   }));
-  return play;
+  return frames;
 }
 
 }  // namespace
 
-const Play& play() {
-  static const Play made = make_play();
+const TestFrames& test_frames() {
+  static const TestFrames made = make_test_frames();
   return made;
 }
 
-const PlayedFrame& shown_in(std::uint32_t cycle) {
-  const Play& frames = play();
+const PlayedFrame& frame_of_cycle(std::uint32_t cycle) {
+  const TestFrames& frames = test_frames();
   if (cycle % k_worst_every == k_worst_every - 1) {
     return frames.worst[cycle / k_worst_every % frames.worst.size()];
   }

@@ -16,16 +16,16 @@ struct PlayedFrame {
   HeadPose head;
 };
 
-struct Play {
+struct TestFrames {
   Cell cell;  // sixteen tools, AHAT
   std::vector<PlayedFrame> crowd;
   std::vector<PlayedFrame> worst;
 };
 
 // Rendered at the first call.
-[[nodiscard]] const Play& play();
+[[nodiscard]] const TestFrames& test_frames();
 
 // Frame of cycle `i`: the crowd forwards and backwards, with a worst-case frame at intervals.
-[[nodiscard]] const PlayedFrame& shown_in(std::uint32_t cycle);
+[[nodiscard]] const PlayedFrame& frame_of_cycle(std::uint32_t cycle);
 
 }  // namespace glint::footprint

@@ -22,7 +22,7 @@ template <class TickGraph = Output>
 class Groups {
  public:
   Groups() {
-    const Cell& cell = play().cell;
+    const Cell& cell = test_frames().cell;
     configure(cell, *tracker_);
     tracker_->template latest<ToolSet>().bind(tools_);
     Output configured;
@@ -41,7 +41,7 @@ class Groups {
   template <class Run>
   void cycle(std::uint32_t number, Run&& run) noexcept {
     if (number % 500 == 499) publish_tools(number);
-    const PlayedFrame& shown = shown_in(number);
+    const PlayedFrame& shown = frame_of_cycle(number);
     // Some time stamps repeat or go backwards, to take every path through CheckFrame.
     const std::int64_t step = number % 97 == 96 ? number - 3 : number;
     const Time exposed{(step + 1) * k_period_ns};
@@ -81,7 +81,7 @@ class Groups {
 
   // Publishes all tools, or one fewer.
   void publish_tools(std::uint32_t number) noexcept {
-    tools_.write_slot() = play().cell.tools;
+    tools_.write_slot() = test_frames().cell.tools;
     tools_.write_slot().count -= static_cast<int>(number / 500 % 2);
     tools_.publish(number + 1, 0);
   }

@@ -18,10 +18,10 @@ struct Extra {
   std::uint32_t number = 0;
 };
 struct AllocateOnce {
-  bool asked = false;
+  bool enabled = false;
   void operator()(const Now& now, Extra& extra) const noexcept {
     extra.number = now.number;
-    if (!asked || now.number != 1000) return;
+    if (!enabled || now.number != 1000) return;
     g_block = std::malloc(64);
     std::free(g_block);
   }
@@ -43,7 +43,7 @@ void activate(G& graph) noexcept [[clang::nonblocking]] {
 int main(int argc, char** argv) {
   using namespace glint::footprint;
   Groups<OutputAndMutant> groups;
-  groups.tick().node<AllocateOnce>().asked = argc == 2 && std::strcmp(argv[1], "allocate") == 0;
+  groups.tick().node<AllocateOnce>().enabled = argc == 2 && std::strcmp(argv[1], "allocate") == 0;
   for (std::uint32_t i = 0; i < k_realtime_cycles; ++i) {
     groups.cycle(i, [](auto& graph) { activate(graph); });
   }

@@ -25,7 +25,7 @@ void read_rom(Bytes bytes) { (void)tool_from_rom_bytes(text_of(bytes), "tool.rom
 void read_npy(Bytes bytes) { (void)read_npy_numbers(file_of(bytes)); }
 
 void read_pgm_file(Bytes bytes) {
-  const Picture picture = read_pgm(file_of(bytes));
+  const Image picture = read_pgm(file_of(bytes));
   expect(picture.values.size() ==
              static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height),
          "as many pixels as its size says");

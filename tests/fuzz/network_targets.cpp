@@ -38,8 +38,8 @@ void unpack(Bytes bytes, const TopicType& type, Use use) {
 
 void read_joint_state(Bytes bytes) {
   unpack<JointStateMessage>(bytes, joint_state_type(), [](const JointStateMessage& message) {
-    HeardJoints joints;
-    if (!hear(message, {}, {}, joints)) return;
+    ReceivedJoints joints;
+    if (!read_message(message, {}, {}, joints)) return;
     std::vector<std::string> names;
     for (int i = 0; i < joints.count; ++i) {
       names.emplace_back(joints.names[static_cast<std::size_t>(i)].data());
@@ -51,16 +51,16 @@ void read_joint_state(Bytes bytes) {
 
 void read_description(Bytes bytes) {
   unpack<TextMessage>(bytes, text_type(), [](const TextMessage& message) {
-    HeardDescription description;
-    (void)hear(message, description);
+    ReceivedDescription description;
+    (void)read_message(message, description);
   });
 }
 
 void read_guess(Bytes bytes) {
   unpack<PoseCovarianceMessage>(bytes, pose_covariance_type(),
                                 [](const PoseCovarianceMessage& message) {
-                                  HeardGuess guess;
-                                  if (!hear(message, {}, {}, guess)) return;
+                                  ReceivedInitialPose guess;
+                                  if (!read_message(message, {}, {}, guess)) return;
                                   expect(guess.pose.translation.allFinite(), "a finite guess");
                                 });
 }
@@ -72,7 +72,7 @@ void read_button_message(Bytes bytes) {
 void read_can_frame(Bytes bytes) {
   const auto frame = frame_of_socketcan(bytes);
   ButtonFrames buttons(0x181, {});
-  buttons.hear(frame, {});
+  buttons.receive(frame, {});
   if (!frame) return;
   expect(frame->length <= frame->data.size(), "no more data than there is room");
   (void)decode_position(*frame);

@@ -23,7 +23,7 @@ void read_all(const std::string& path, ReadTolerance tolerance) {
   }
 }
 
-void read_whole(Bytes bytes) { read_all(file_of(bytes), {}); }
+void read_complete(Bytes bytes) { read_all(file_of(bytes), {}); }
 
 void read_tolerant(Bytes bytes) { read_all(file_of(bytes), {true, true}); }
 
@@ -118,7 +118,7 @@ void read_frames_csv(Bytes bytes) {
 }
 
 constexpr Target k_recording_targets[] = {
-    {"mcap", read_whole},    {"mcap_tolerant", read_tolerant},  {"messages", read_message},
+    {"mcap", read_complete}, {"mcap_tolerant", read_tolerant},  {"messages", read_message},
     {"rosbag", read_rosbag}, {"camera_info", read_lens_of_bag}, {"hl2ss", read_hl2ss},
     {"tar", read_tar},       {"frames_csv", read_frames_csv}};
 

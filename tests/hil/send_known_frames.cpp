@@ -46,7 +46,7 @@ int send(int count, char** arguments) {
   CanSinkOptions options;
   options.log_interface = arguments[1];
   options.format = CanFormat::fd;
-  options.when_full = WhenFull::wait;
+  options.when_full = OverflowPolicy::wait;
   std::vector<std::unique_ptr<CanSink>> sinks;
   for (int i = 2; i < count; ++i) sinks.push_back(open_can_sink(arguments[i], options));
 

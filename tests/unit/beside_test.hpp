@@ -7,7 +7,7 @@
 
 namespace glint {
 
-inline std::string beside_test(const char* name) {
+inline std::string path_beside_test(const char* name) {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 

@@ -20,7 +20,7 @@ void check_camera(const Cell& cell, const FrameLoop& loop) {
   }
 }
 
-void check_for_board(const Cell& cell) {
+void check_for_companion(const Cell& cell) {
   if (cell.tool_changes.empty()) return;
   throw InputError(cell.file +
                    ": has a [[tool_change]]; expected none, for a board keeps the tools that it "

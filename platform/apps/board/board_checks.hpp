@@ -8,7 +8,7 @@
 namespace glint {
 
 // Throws InputError if the cell changes its tools during a run.
-void check_for_board(const Cell& cell);
+void check_for_companion(const Cell& cell);
 // Throws InputError if the loop's frames do not have the format of the cell's camera.
 void check_camera(const Cell& cell, const FrameLoop& loop);
 

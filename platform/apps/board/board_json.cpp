@@ -42,7 +42,7 @@ Json recording_of(const SinkOutcome& sinks) {
 }
 
 // Output of the first tool, as in the decoded CAN log.
-Json output_of(const TicksLeft& left) {
+Json output_of(const SentTicksSummary& left) {
   const ToolTicks& tool = left.tools[0];
   return {{"ticks_left", left.ticks},
           {"measured", tool.measured},
@@ -69,7 +69,7 @@ Json losses_json(const SinkOutcome& result) {
 
 }  // namespace
 
-Json as_json(const BoardResult& result) {
+Json as_json(const CompanionResult& result) {
   Json json{
       {"frames", result.frames},
       {"frames_worst", result.frames_worst},
@@ -88,7 +88,7 @@ Json as_json(const BoardResult& result) {
       {"sending_us", as_json(figures_of(result.latencies, &FrameToCan::sending))},
       {"output", output_of(result.sent)},
       {"losses", losses_json(result)},
-      {"latencies_left_out", result.latencies_left_out},
+      {"latencies_left_out", result.latencies_overwritten},
       {"frame_wake_up_us", spread_us(result.frame_wake_up_ns)},
       {"tick_wake_up_us", spread_us(result.tick_wake_up_ns)},
       {"can",
@@ -97,14 +97,14 @@ Json as_json(const BoardResult& result) {
         {"dropped", result.can.dropped},
         {"failed", result.can.failed}}},
       {"can_heard",
-       {{"buttons", result.can_heard.heard},
-        {"refused", result.can_heard.refused},
-        {"why_not", result.can_not_heard}}},
+       {{"buttons", result.can_received.received},
+        {"refused", result.can_received.refused},
+        {"why_not", result.can_receive_error}}},
       {"dds",
        {{"offered", result.dds.offered},
         {"written", result.dds.written},
         {"ring_dropped", result.dds.ring_dropped},
-        {"others_lost", result.dds.others_lost}}},
+        {"others_lost", result.dds.poses_and_transforms_lost}}},
       {"heap_counted", result.heap_counted},
       {"heap_allocations", result.heap_allocations_after_start},
       {"page_faults", result.page_faults_after_start},

@@ -8,7 +8,7 @@
 
 namespace glint {
 
-[[nodiscard]] nlohmann::ordered_json as_json(const BoardResult& result);
+[[nodiscard]] nlohmann::ordered_json as_json(const CompanionResult& result);
 // Includes "system", the fields of SystemShare (schedules/task_model.hpp): each the observed
 // maximum, except the gap, which is the minimum.
 [[nodiscard]] nlohmann::ordered_json as_json(const SystemShareFigures& figures);

@@ -30,11 +30,11 @@ namespace {
 struct Arguments {
   std::string cell_file, frames_file, can, json_file, board;
   bool with_dds = false, measure_system = false;
-  BoardOptions options;
+  CompanionOptions options;
 };
 
 // Node bounds, by node, for the cell's limits.
-BoardBounds bounds_on(const std::string& name, const Cell& cell) {
+NodeWcets bounds_on(const std::string& name, const Cell& cell) {
   if (name.empty()) return {};
   const Board board = load_board(name, expected_board(), BoardUse::run_here);
   const auto by_node = [](const auto& bounds) {
@@ -50,13 +50,15 @@ void write(const std::string& file, const nlohmann::ordered_json& figures) {
     std::printf("%s\n", figures.dump(2).c_str());
     return;
   }
-  if (const std::string reason = write_whole_file(file, figures.dump(2) + "\n"); !reason.empty()) {
+  if (const std::string reason = write_file_atomically(file, figures.dump(2) + "\n");
+      !reason.empty()) {
     throw InputError(file + ": cannot be written: " + reason + "; expected a place for a file");
   }
 }
 
 // Reasons for exit code 1, one per line.
-std::vector<std::string> failures_of(const BoardResult& result, const BoardOptions& options) {
+std::vector<std::string> failures_of(const CompanionResult& result,
+                                     const CompanionOptions& options) {
   std::vector<std::string> lines = lines_of(losses_of(result));
   if (!result.fault.empty()) lines.push_back(result.fault);
   for (const std::string& line : result.source.failures) lines.push_back("source: " + line);
@@ -68,8 +70,9 @@ std::vector<std::string> failures_of(const BoardResult& result, const BoardOptio
 }
 
 // Runs on the loop, or on the cell's live source.
-BoardResult run_on_frames(const std::string& loop_file, Cell cell, const BoardOptions& options) {
-  if (!loop_file.empty()) return run_board(std::move(cell), FrameLoop(loop_file), options);
+CompanionResult run_on_frames(const std::string& loop_file, Cell cell,
+                              const CompanionOptions& options) {
+  if (!loop_file.empty()) return run_companion(std::move(cell), FrameLoop(loop_file), options);
   cell.realtime = true;
   const std::unique_ptr<LiveSource> source =
       open_live_source(cell, {Duration{}, options.stop, options.frames});
@@ -77,7 +80,7 @@ BoardResult run_on_frames(const std::string& loop_file, Cell cell, const BoardOp
     throw InputError("no frames: expected --frames, or a cell whose [source] is live: " +
                      live_kinds());
   }
-  return run_board(std::move(cell), *source, options);
+  return run_companion(std::move(cell), *source, options);
 }
 
 int run(const Arguments& arguments) {
@@ -99,10 +102,10 @@ int run(const Arguments& arguments) {
                  static_cast<unsigned long long>(sink->counts().lost()));
     return 1;
   }
-  BoardOptions options = arguments.options;
+  CompanionOptions options = arguments.options;
   options.stop = &stop_on_signals();
   options.bounds = bounds_on(arguments.board, cell);
-  const BoardResult result = run_on_frames(arguments.frames_file, std::move(cell), options);
+  const CompanionResult result = run_on_frames(arguments.frames_file, std::move(cell), options);
   std::vector<std::string> failures = failures_of(result, options);
   try {
     write(arguments.json_file, as_json(result));

@@ -17,32 +17,34 @@ namespace glint {
 
 // Worst-case execution time by node, in the order of execution. Empty: unknown; an overrun is then
 // detected only after the deadline.
-struct BoardBounds {
+struct NodeWcets {
   std::vector<std::int64_t> frame_ns, tick_ns;
 };
 
-struct BoardOptions {
+struct CompanionOptions {
   std::int64_t frames = 1000;               // 0: until `stop`
   const std::atomic<bool>* stop = nullptr;  // set: ends the run here, with complete results so far
   int core = -1;                            // core for all threads of the run; -1: any
   std::string out = ".";  // folder of a CAN log, if the cell names one, and of the recording
   std::string record;     // file, at the cell's [record] level; empty: no recording
-  BoardBounds bounds;
+  NodeWcets bounds;
 };
 
-struct BoardResult : SessionResult {
+struct CompanionResult : SessionResult {
   std::int64_t frames_worst = 0;               // number of frames that are worst-case inputs
   std::vector<std::int64_t> frame_wake_up_ns;  // the newest, and the largest
 };
 
 // Schedule with one worker per group, all on one core, in the graphs' order.
-[[nodiscard]] RunPlan plan_on_one_core(Cell cell, int core, const BoardBounds& bounds);
+[[nodiscard]] RunSchedule schedule_on_one_core(Cell cell, int core, const NodeWcets& bounds);
 
 // Runs on a live source with the cell's camera; the source's settings determine the end. Throws
 // InputError for a cell that a companion computer does not run (board_checks.hpp), for depth images
 // or a model that cannot be read, and for a recording that cannot be created; MissingDevice.
-[[nodiscard]] BoardResult run_board(Cell cell, FrameSource& source, const BoardOptions& options);
+[[nodiscard]] CompanionResult run_companion(Cell cell, FrameSource& source,
+                                            const CompanionOptions& options);
 // Runs on a loop of frames, like a camera with the loop's period.
-[[nodiscard]] BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options);
+[[nodiscard]] CompanionResult run_companion(Cell cell, const FrameLoop& loop,
+                                            const CompanionOptions& options);
 
 }  // namespace glint

@@ -55,11 +55,12 @@ void check(const std::string& path, const FrameLoopHeader& header, std::size_t s
          "at least 1");
   number(offsetof(FrameLoopHeader, period_ns), "period_ns", header.period_ns, header.period_ns > 0,
          "more than 0");
-  const std::size_t whole =
+  const std::size_t expected_bytes =
       padded(sizeof header) + static_cast<std::size_t>(header.frames) * frame_size(header);
-  if (size != whole) {
-    refuse(path, size, "the end",
-           std::to_string(whole) + " bytes for " + std::to_string(header.frames) + " frames");
+  if (size != expected_bytes) {
+    refuse(
+        path, size, "the end",
+        std::to_string(expected_bytes) + " bytes for " + std::to_string(header.frames) + " frames");
   }
 }
 
@@ -96,27 +97,27 @@ FrameLoop::FrameLoop(const std::string& path) {
 
 FrameLoop::~FrameLoop() { ::munmap(const_cast<std::byte*>(bytes_), size_); }
 
-std::uint32_t FrameLoop::place_of(std::uint64_t shown) const noexcept {
+std::uint32_t FrameLoop::index_of(std::uint64_t number) const noexcept {
   const std::uint64_t last = header_.frames - 1;
   if (last == 0) return 0;
-  const std::uint64_t step = shown % (2 * last);  // shows the end frames once
+  const std::uint64_t step = number % (2 * last);  // shows the end frames once
   return static_cast<std::uint32_t>(step <= last ? step : 2 * last - step);
 }
 
-const std::byte* FrameLoop::frame_bytes(std::uint32_t place) const noexcept {
-  return bytes_ + padded(sizeof header_) + place * frame_size(header_);
+const std::byte* FrameLoop::frame_bytes(std::uint32_t index) const noexcept {
+  return bytes_ + padded(sizeof header_) + index * frame_size(header_);
 }
 
-const LoopFrame& FrameLoop::entry(std::uint32_t place) const noexcept {
-  return *reinterpret_cast<const LoopFrame*>(frame_bytes(place));
+const LoopFrame& FrameLoop::entry(std::uint32_t index) const noexcept {
+  return *reinterpret_cast<const LoopFrame*>(frame_bytes(index));
 }
 
-Frame FrameLoop::view(std::uint32_t place, Time arrival, std::uint64_t sequence) const noexcept {
+Frame FrameLoop::view(std::uint32_t index, Time arrival, std::uint64_t sequence) const noexcept {
   const int width = static_cast<int>(header_.width), height = static_cast<int>(header_.height);
-  const std::byte* const reflectivity = frame_bytes(place) + padded(sizeof(LoopFrame));
+  const std::byte* const reflectivity = frame_bytes(index) + padded(sizeof(LoopFrame));
   const std::byte* const depth = reflectivity + plane_bytes(header_, header_.reflectivity_bits);
   Frame frame;
-  frame.mid_exposure = arrival - Duration{entry(place).exposure_to_arrival_ns};
+  frame.mid_exposure = arrival - Duration{entry(index).exposure_to_arrival_ns};
   frame.arrival = arrival;
   frame.sequence = sequence;
   if (header_.reflectivity_bits == 8) {
@@ -130,8 +131,8 @@ Frame FrameLoop::view(std::uint32_t place, Time arrival, std::uint64_t sequence)
   return frame;
 }
 
-HeadPose FrameLoop::head(std::uint32_t place, Time arrival) const noexcept {
-  const LoopFrame& from = entry(place);
+HeadPose FrameLoop::head(std::uint32_t index, Time arrival) const noexcept {
+  const LoopFrame& from = entry(index);
   HeadPose head;
   head.time = arrival - Duration{from.exposure_to_arrival_ns};
   head.valid = from.head_valid != 0;

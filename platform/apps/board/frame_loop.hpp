@@ -60,7 +60,7 @@ class FrameLoopWriter {
   void close();  // throws InputError unless header.frames were added and all is on disk
 
  private:
-  void put(const void* bytes, std::size_t count);
+  void write_padded(const void* bytes, std::size_t count);
 
   std::string path_, part_path_;
   FrameLoopHeader header_;
@@ -78,17 +78,17 @@ class FrameLoop {
   FrameLoop& operator=(const FrameLoop&) = delete;
 
   [[nodiscard]] const FrameLoopHeader& header() const noexcept { return header_; }
-  // Index in the file of the frame shown as number `shown`: forward, then backward, so that a pen
-  // never jumps.
-  [[nodiscard]] std::uint32_t place_of(std::uint64_t shown) const noexcept;
-  [[nodiscard]] const LoopFrame& entry(std::uint32_t place) const noexcept;
+  // Index in the file of the frame delivered as number `number`: forward, then backward, so that a
+  // pen never jumps.
+  [[nodiscard]] std::uint32_t index_of(std::uint64_t number) const noexcept;
+  [[nodiscard]] const LoopFrame& entry(std::uint32_t index) const noexcept;
   // Pixels and head pose of a frame, with the given arrival time.
-  [[nodiscard]] Frame view(std::uint32_t place, Time arrival,
+  [[nodiscard]] Frame view(std::uint32_t index, Time arrival,
                            std::uint64_t sequence) const noexcept;
-  [[nodiscard]] HeadPose head(std::uint32_t place, Time arrival) const noexcept;
+  [[nodiscard]] HeadPose head(std::uint32_t index, Time arrival) const noexcept;
 
  private:
-  [[nodiscard]] const std::byte* frame_bytes(std::uint32_t place) const noexcept;
+  [[nodiscard]] const std::byte* frame_bytes(std::uint32_t index) const noexcept;
 
   FrameLoopHeader header_;
   const std::byte* bytes_ = nullptr;

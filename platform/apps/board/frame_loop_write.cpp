@@ -25,7 +25,7 @@ FrameLoopWriter::FrameLoopWriter(std::string path, const FrameLoopHeader& header
   part_path_ = std::move(part.path);
   descriptor_ = part.descriptor;
   if (descriptor_ < 0) refuse(part_path_, std::string("cannot be made: ") + std::strerror(errno));
-  put(&header_, sizeof header_);
+  write_padded(&header_, sizeof header_);
 }
 
 FrameLoopWriter::~FrameLoopWriter() {
@@ -42,13 +42,13 @@ void FrameLoopWriter::add(const LoopFrame& frame, const FrameBuffer& pixels) {
     refuse(path_,
            "a frame of " + std::to_string(found) + " pixels; expected " + std::to_string(count));
   }
-  put(&frame, sizeof frame);
+  write_padded(&frame, sizeof frame);
   if (bytes) {
-    put(pixels.reflectivity_8.data(), count);
+    write_padded(pixels.reflectivity_8.data(), count);
   } else {
-    put(pixels.reflectivity_16.data(), count * 2);
+    write_padded(pixels.reflectivity_16.data(), count * 2);
   }
-  if (header_.has_depth != 0) put(pixels.depth.data(), count * 2);
+  if (header_.has_depth != 0) write_padded(pixels.depth.data(), count * 2);
   ++added_;
 }
 
@@ -63,7 +63,7 @@ void FrameLoopWriter::close() {
   }
 }
 
-void FrameLoopWriter::put(const void* bytes, std::size_t count) {
+void FrameLoopWriter::write_padded(const void* bytes, std::size_t count) {
   static constexpr std::array<char, k_loop_alignment> zeros{};
   const auto write_all = [this](const char* at, std::size_t left) {
     while (left > 0) {

@@ -42,15 +42,16 @@ bool LoopSource::wait(ArrivedFrame& arrived) {
   } else if (ends()) {
     return false;
   }
-  const std::uint32_t place = loop_.place_of(static_cast<std::uint64_t>(delivered_));
-  arrived.frame = loop_.view(place, stamp, static_cast<std::uint64_t>(delivered_ + 1));
-  arrived.head = loop_.head(place, stamp);
-  arrived.slot = static_cast<int>(place);
-  if (loop_.entry(place).kind == LoopFrameKind::worst) ++worst_shown_;
+  const std::uint32_t index = loop_.index_of(static_cast<std::uint64_t>(delivered_));
+  arrived.frame = loop_.view(index, stamp, static_cast<std::uint64_t>(delivered_ + 1));
+  arrived.head = loop_.head(index, stamp);
+  arrived.slot = static_cast<int>(index);
+  if (loop_.entry(index).kind == LoopFrameKind::worst) ++worst_frames_delivered_;
   ++delivered_;
   return true;
 }
 
-void LoopSource::give_back(const ArrivedFrame& /*arrived*/) noexcept {}  // frames stay in the loop
+// Frames stay in the loop.
+void LoopSource::release_pixels(const ArrivedFrame& /*arrived*/) noexcept {}
 
 }  // namespace glint

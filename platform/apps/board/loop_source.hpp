@@ -40,14 +40,14 @@ class LoopSource final : public FrameSource {
   // Queued frames are not lost: the next call returns them, and their latency counts from their own
   // arrival.
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
-  void give_back(const ArrivedFrame& arrived) noexcept override;
+  void release_pixels(const ArrivedFrame& arrived) noexcept override;
 
   // Time from a frame's nominal arrival to the first instruction of the waiting thread; only for
   // frames that arrived during wait().
   [[nodiscard]] const std::vector<std::int64_t>& wake_ups_ns() const {
     return wake_ups_ns_.entries();
   }
-  [[nodiscard]] std::int64_t worst_shown() const { return worst_shown_; }
+  [[nodiscard]] std::int64_t worst_frames_delivered() const { return worst_frames_delivered_; }
   // Report of the arrival thread, in a live run.
   [[nodiscard]] const ThreadReport& thread_report() const { return arrivals_->report(); }
 
@@ -64,7 +64,7 @@ class LoopSource final : public FrameSource {
   std::atomic<std::int64_t> arrived_count_{0};
   std::atomic<bool> stop_{false};
   std::int64_t delivered_ = 0;
-  std::int64_t worst_shown_ = 0;
+  std::int64_t worst_frames_delivered_ = 0;
   WakeUpLog wake_ups_ns_;
   std::unique_ptr<RealTimeThread> arrivals_;
 };

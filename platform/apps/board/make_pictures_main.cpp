@@ -17,7 +17,7 @@ namespace {
 struct Arguments {
   std::string cell_file, folder;
   RobotFiles robot;
-  int pictures = 13;
+  int images = 13;
   int first = 450;  // as in glint_board_frames
   int every = 9;    // in frames: 200 ms at 45 Hz
 };
@@ -58,21 +58,21 @@ Cell cell_of(const Arguments& arguments) {
 int make(const Arguments& arguments) {
   const Cell cell = cell_of(arguments);
   const sim::Simulator simulator(scenario_of(cell));
-  const int last = arguments.first + (arguments.pictures - 1) * arguments.every;
+  const int last = arguments.first + (arguments.images - 1) * arguments.every;
   if (arguments.first < 0 || last >= simulator.frame_count()) {
     throw InputError("--first " + std::to_string(arguments.first) + " to " + std::to_string(last) +
                      ": the scenario has " + std::to_string(simulator.frame_count()) +
                      " frames; expected at most that");
   }
   const RobotModel robot = load_robot(arguments.robot);
-  LongThrow camera(simulator,
-                   posed_surface(robot, cell.mapping->joints, cell.file + ": mapping.joints"),
-                   cell.T_world_robot);
+  MappingCamera camera(simulator,
+                       posed_surface(robot, cell.mapping->joints, cell.file + ": mapping.joints"),
+                       cell.T_world_robot);
   const std::filesystem::path folder(arguments.folder);
   std::filesystem::create_directories(folder);
   write(folder / "camera-intrinsics.txt", camera_text());
   sim::SimFrame frame;
-  for (int p = 0; p < arguments.pictures; ++p) {
+  for (int p = 0; p < arguments.images; ++p) {
     char name[16];
     std::snprintf(name, sizeof name, "%05d", p);
     const std::size_t width = k_long_throw.width, height = k_long_throw.height;
@@ -81,7 +81,7 @@ int make(const Arguments& arguments) {
     write(folder / (std::string(name) + ".depth.npy"), npy_float32_bytes(depth));
     write(folder / (std::string(name) + ".pose.txt"), pose_text(frame.head.T_world_camera));
   }
-  std::printf("%s: %d depth pictures of %s\n", arguments.folder.c_str(), arguments.pictures,
+  std::printf("%s: %d depth pictures of %s\n", arguments.folder.c_str(), arguments.images,
               robot.name.c_str());
   return 0;
 }
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--urdf", arguments.robot.urdf, "the robot's description")->required();
   app.add_option("--package-dir", arguments.robot.package_dirs, "where package:// leads");
-  app.add_option("--pictures", arguments.pictures, "how many")->check(CLI::PositiveNumber);
+  app.add_option("--pictures", arguments.images, "how many")->check(CLI::PositiveNumber);
   app.add_option("--first", arguments.first, "the first one's frame in the scenario");
   app.add_option("--every", arguments.every, "frames from one to the next")
       ->check(CLI::PositiveNumber);

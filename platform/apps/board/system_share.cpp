@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 // A clock reading that takes this many times the median was interrupted.
-constexpr std::int64_t k_disturbed = 4;
+constexpr std::int64_t k_interrupted_factor = 4;
 constexpr int k_undisturbed_readings = 1000;
 
 constexpr Duration k_settle = milliseconds(20);
@@ -45,7 +45,7 @@ void releases(const SystemShareOptions& options, std::vector<std::int64_t>& late
   waiting.join();
 }
 
-std::int64_t usual_reading_ns() {
+std::int64_t median_reading_ns() {
   std::vector<std::int64_t> steps;
   for (int i = 0; i < k_undisturbed_readings; ++i) {
     const Time before = monotonic_now();
@@ -56,16 +56,17 @@ std::int64_t usual_reading_ns() {
 }
 
 void interrupts(const SystemShareOptions& options, SystemShareFigures& figures) {
-  figures.clock_read_ns = usual_reading_ns();
+  figures.clock_read_ns = median_reading_ns();
   const Time end = monotonic_now() + options.interrupts_watched;
-  Time last = monotonic_now(), lost_before{};
+  Time last = monotonic_now(), last_interruption{};
   while (last < end) {
     const Time now = monotonic_now();
     const std::int64_t step_ns = (now - last).nanoseconds;
-    if (step_ns > k_disturbed * figures.clock_read_ns) {
+    if (step_ns > k_interrupted_factor * figures.clock_read_ns) {
       figures.interrupt_ns.push_back(step_ns - figures.clock_read_ns);
-      if (lost_before > Time{}) figures.interrupt_gap_ns.push_back((now - lost_before).nanoseconds);
-      lost_before = now;
+      if (last_interruption > Time{})
+        figures.interrupt_gap_ns.push_back((now - last_interruption).nanoseconds);
+      last_interruption = now;
     }
     last = now;
   }

@@ -7,7 +7,7 @@ constexpr int k_marker_pitch = 16;  // pixels between the centres of drawn marke
 constexpr int k_marker_radius = 5;  // of a 10 mm ball at 0.5 m, rounded up
 
 // Hash of a pixel's index: the finaliser of MurmurHash3 (Appleby, public domain).
-std::uint32_t scrambled(std::uint32_t value) {
+std::uint32_t hashed(std::uint32_t value) {
   value ^= value >> 16;
   value *= 0x85EBCA6Bu;
   value ^= value >> 13;
@@ -34,7 +34,7 @@ bool is_bright(WorstFrame kind, int x, int y, int width) {
     case WorstFrame::markers:
       return in_marker(x, y);
     case WorstFrame::noise:
-      return (scrambled(static_cast<std::uint32_t>(y * width + x)) & 1u) != 0;
+      return (hashed(static_cast<std::uint32_t>(y * width + x)) & 1u) != 0;
   }
   return false;
 }

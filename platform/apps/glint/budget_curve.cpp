@@ -38,7 +38,7 @@ nlohmann::ordered_json as_json(const std::vector<CurveRow>& rows, const Board& b
                       {"strays", row.point.strays},
                       {"frames", row.frames},
                       {"median", row.median},
-                      {"observed_max", row.greatest},
+                      {"observed_max", row.maximum},
                       {"bound", row.bound}});
   }
   return {
@@ -66,7 +66,7 @@ int draw_curve(const CurveCommand& command) {
   bool holds = !rows.empty();
   for (const CurveRow& row : rows) {
     std::printf("%5d %6d %6zu %12.0f %12.0f %12.0f%s\n", row.point.tools, row.point.strays,
-                row.frames, row.median, row.greatest, row.bound,
+                row.frames, row.median, row.maximum, row.bound,
                 row.holds() ? "" : "  ABOVE ITS BOUND");
     holds = holds && row.holds();
   }

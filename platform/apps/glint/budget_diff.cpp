@@ -30,7 +30,8 @@ int print_diff(const DiffArguments& arguments) {
     }
     std::printf("%-28s %-8s %14.3f %14.3f  %-19s %s%s\n", printable(row.name).c_str(),
                 printable(row.what).c_str(), row.before, row.after, ratio,
-                name_of(row.change).c_str(), row.worse_beyond ? ", beyond the tolerance" : "");
+                name_of(row.change).c_str(),
+                row.significantly_slower ? ", beyond the tolerance" : "");
   }
   for (const std::string& name : diff.only_before)
     std::printf("only before: %s\n", printable(name).c_str());

@@ -53,7 +53,7 @@ Observations observe_in_passes(const MeasureRequest& request, int passes) {
   Observations seen = observe(request, what);
   for (int pass = 2; pass <= passes; ++pass) {
     const std::string which = ", pass " + std::to_string(pass) + " of " + std::to_string(passes);
-    keep_least(seen, observe(request, what + which));
+    keep_minimum(seen, observe(request, what + which));
   }
   return seen;
 }

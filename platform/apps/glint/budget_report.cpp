@@ -36,7 +36,7 @@ int write_report(const ReportArguments& arguments) {
   for (const Sentence& reason : document.reasons)
     std::printf("  %s\n", printable(reason.text).c_str());
   std::printf("written    %s\n", (folder / "budget.html").string().c_str());
-  return document.verdict == Verdict::fails || document.verdict == Verdict::void_bound ? 1 : 0;
+  return document.verdict == Verdict::fails || document.verdict == Verdict::invalid_bound ? 1 : 0;
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ int schedule(const ScheduleArguments& arguments) {
 
   Plan plan = synthesize(load);
   const Plan placed = plan;
-  plan = retimed(plan, model);
+  plan = with_computed_times(plan, model);
   plan.graph_signature = graphs_signature(model);
   plan.board = board.name;
   plan.board_sha256 = board.sha256;
@@ -50,8 +50,8 @@ int schedule(const ScheduleArguments& arguments) {
   for (std::size_t g = 0; typical && g < plan.groups.size(); ++g) {
     // Optimality was proven for the typical load, not for the bounds.
     plan.groups[g].optimal = false;
-    plan.groups[g].least_possible_ns =
-        least_makespan(model.groups[g], model.cores, model.system.core_handover_ns);
+    plan.groups[g].makespan_lower_bound_ns =
+        makespan_lower_bound(model.groups[g], model.cores, model.system.inter_core_delay_ns);
   }
   for (const std::string& fault : check_plan(plan, model))
     std::printf("FAILS    %s\n", printable(fault).c_str());
@@ -60,15 +60,16 @@ int schedule(const ScheduleArguments& arguments) {
   std::printf("group        priority  makespan us  least us  list us  one core us  %s\n",
               typical ? "typical us" : "optimal");
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
-    const std::int64_t handover = model.system.core_handover_ns;
+    const std::int64_t core_delay = model.system.inter_core_delay_ns;
     const auto length = [&](int cores) {
-      return times_of(model.groups[g], list_schedule(model.groups[g], cores, handover), handover)
+      return times_of(model.groups[g], list_schedule(model.groups[g], cores, core_delay),
+                      core_delay)
           ->makespan_ns;
     };
     const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
     std::printf("%-12s %8d  %11.1f  %8.1f %8.1f  %11.1f  ", printable(plan.groups[g].name).c_str(),
                 plan.groups[g].priority, us(plan.groups[g].makespan_ns),
-                us(plan.groups[g].least_possible_ns), us(length(model.cores)), us(length(1)));
+                us(plan.groups[g].makespan_lower_bound_ns), us(length(model.cores)), us(length(1)));
     if (typical) {
       std::printf("%.1f\n", us(placed.groups[g].makespan_ns));
     } else {

@@ -68,7 +68,7 @@ int run_align(const AlignArguments& arguments) {
   PoseSeries reference = load_pose_series(reference_source);
   const Duration apart = reference.begin - series.begin;
   if (!arguments.align_starts) {
-    for (StampedPose& pose : reference.poses) pose.time = pose.time + apart;
+    for (TimedPose& pose : reference.poses) pose.time = pose.time + apart;
   }
   AlignSettings settings;
   settings.offset_max_s = arguments.offset_max_s;

@@ -24,10 +24,10 @@ Figures figures_for(const BiasArguments& arguments, const PoseSeries& series,
   const BiasCorrection& correction = result.correction;
   return {{"source", series.what},
           {"reference", arguments.reference},
-          {"mean_error_mm", 1e3 * correction.shift_m.norm()},
-          {"mean_error_deg", correction.turn_rad.norm() * k_degrees_per_radian},
-          {"shift_sigma_mm", figures_of(result.shift_sigma_m, 1e3)},
-          {"turn_sigma_deg", figures_of(result.turn_sigma_rad, k_degrees_per_radian)},
+          {"mean_error_mm", 1e3 * correction.translation_m.norm()},
+          {"mean_error_deg", correction.rotation_rad.norm() * k_degrees_per_radian},
+          {"shift_sigma_mm", figures_of(result.translation_sigma_m, 1e3)},
+          {"turn_sigma_deg", figures_of(result.rotation_sigma_rad, k_degrees_per_radian)},
           {"rms_before_mm", 1e3 * result.rms_before_m},
           {"rms_after_mm", 1e3 * result.rms_after_m},
           {"rms_before_deg", result.rms_before_rad * k_degrees_per_radian},
@@ -35,11 +35,11 @@ Figures figures_for(const BiasArguments& arguments, const PoseSeries& series,
           {"samples", result.samples},
           {"outliers", result.outliers},
           {"in_motion", result.moving},
-          {"samples_that_tell_as_one", result.correlated},
+          {"samples_that_tell_as_one", result.variance_inflation},
           {"correction",
            {{"frame", arguments.along},
-            {"shift_mm", figures_of(correction.shift_m, 1e3)},
-            {"turn_deg", figures_of(correction.turn_rad, k_degrees_per_radian)},
+            {"shift_mm", figures_of(correction.translation_m, 1e3)},
+            {"turn_deg", figures_of(correction.rotation_rad, k_degrees_per_radian)},
             {"range_mm", range_figures(correction.range_m, 1e3)},
             {"off_axis_deg", range_figures(result.off_axis_rad, k_degrees_per_radian)},
             {"tilt_deg", range_figures(result.tilt_rad, k_degrees_per_radian)}}}};
@@ -51,7 +51,7 @@ int run_bias(const BiasArguments& arguments) {
   reference_source.poses = arguments.reference;
   PoseSeries reference = load_pose_series(reference_source);
   const Duration apart = reference.begin - series.begin;
-  for (StampedPose& pose : reference.poses) pose.time = pose.time + apart;
+  for (TimedPose& pose : reference.poses) pose.time = pose.time + apart;
   if (!arguments.align.empty()) {
     reference.poses = in_poses_frame(std::move(reference.poses), load_alignment(arguments.align));
   }

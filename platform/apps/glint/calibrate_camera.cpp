@@ -44,7 +44,7 @@ int run_table(const CameraArguments& arguments) {
   const LensFit fit = fit_lens_to_table(arguments.ray_table, arguments.width);
   const Figures figures{{"source", arguments.ray_table},
                         {"rms_px", fit.rms_px},
-                        {"largest_px", fit.most_px},
+                        {"largest_px", fit.error_max_px},
                         {"rays", fit.pixels},
                         {"camera", lens_figures(fit.model)}};
   finish_calibration(
@@ -55,8 +55,8 @@ int run_table(const CameraArguments& arguments) {
   return 0;
 }
 
-BoardSettings board_settings(const CameraArguments& arguments) {
-  BoardSettings settings;
+CameraCalibrationSettings target_settings(const CameraArguments& arguments) {
+  CameraCalibrationSettings settings;
   char rest = 0;
   if (std::sscanf(arguments.board.c_str(), "%dx%d%c", &settings.columns, &settings.rows, &rest) !=
           2 ||
@@ -65,14 +65,14 @@ BoardSettings board_settings(const CameraArguments& arguments) {
                      ": expected COLUMNSxROWS of inner corners or circles, 3 to 50 each, e.g. 9x6");
   }
   settings.pattern =
-      arguments.pattern == "circles" ? BoardPattern::circles : BoardPattern::chessboard;
+      arguments.pattern == "circles" ? TargetPattern::circles : TargetPattern::chessboard;
   settings.lens = arguments.lens == "brown" ? Lens::brown : Lens::rational;
   settings.spacing_m = 1e-3 * arguments.spacing_mm;
   return settings;
 }
 
 // The lens is not calibrated yet; any lens serves to read the frames.
-void put_any_lens(Camera& camera) {
+void set_placeholder_lens(Camera& camera) {
   if (has_lens(camera)) return;
   camera.model.lens = Lens::brown;
   camera.model.fx = camera.model.fy = camera.model.width;
@@ -80,23 +80,23 @@ void put_any_lens(Camera& camera) {
   camera.model.cy = 0.5 * camera.model.height;
 }
 
-BoardFit fit_of_frames(const CameraArguments& arguments, std::vector<std::string>& failures) {
+CameraFit fit_of_frames(const CameraArguments& arguments, std::vector<std::string>& failures) {
   Cell cell = recorded_source_cell(arguments.recording, arguments.config, "");
-  put_any_lens(cell.camera);
+  set_placeholder_lens(cell.camera);
   const std::unique_ptr<FrameSource> source = open_source(cell);
-  BoardFit fit = calibrate_board(*source, arguments.recording, board_settings(arguments));
+  CameraFit fit = calibrate_camera(*source, arguments.recording, target_settings(arguments));
   failures = source->report().failures;
   return fit;
 }
 
-int run_boards(const CameraArguments& arguments) {
+int run_images(const CameraArguments& arguments) {
   std::vector<std::string> failures;
-  const BoardFit fit = arguments.recording.empty()
-                           ? calibrate_board(arguments.images, board_settings(arguments))
-                           : fit_of_frames(arguments, failures);
+  const CameraFit fit = arguments.recording.empty()
+                            ? calibrate_camera(arguments.images, target_settings(arguments))
+                            : fit_of_frames(arguments, failures);
   const Figures figures{{"source", arguments.recording.empty() ? "--images" : arguments.recording},
                         {"rms_px", fit.rms_px},
-                        {"largest_px", fit.most_px},
+                        {"largest_px", fit.error_max_px},
                         {"images", fit.images},
                         {"images_used", fit.images_used},
                         {"corners", fit.corners},
@@ -151,7 +151,7 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
       throw InputError(
           "calibrate camera: expected one of --images, --recording SOURCE and --ray-table FILE");
     }
-    exit_code = arguments->ray_table.empty() ? run_boards(*arguments) : run_table(*arguments);
+    exit_code = arguments->ray_table.empty() ? run_images(*arguments) : run_table(*arguments);
   });
 }
 

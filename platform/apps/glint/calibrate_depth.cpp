@@ -20,7 +20,7 @@ struct DepthArguments {
   CalibrationOutput output;
 };
 
-Figures figures_for(const BlobSeries& series, const Tool& tool, const SightingSeries& seen,
+Figures figures_for(const BlobSeries& series, const Tool& tool, const ObservationSeries& seen,
                     const DepthCalibration& found) {
   const auto sigma_mm = [&](int i) { return 1e3 * std::sqrt(found.covariance(i, i)); };
   return {{"source", series.what},
@@ -40,11 +40,11 @@ Figures figures_for(const BlobSeries& series, const Tool& tool, const SightingSe
           {"frames_ambiguous", seen.ambiguous},
           {"markers", found.markers},
           {"outliers", found.outliers},
-          {"frames_that_tell_as_one", found.correlated},
+          {"frames_that_tell_as_one", found.variance_inflation},
           {"depth_bias",
            {{"offset_mm", 1e3 * found.bias.offset_m},
             {"mm_per_m", 1e3 * found.bias.per_metre},
-            {"dim_mm", 1e3 * found.bias.dim_m},
+            {"dim_mm", 1e3 * found.bias.low_signal_m},
             {"range_mm", {1e3 * found.bias.range_min_m, 1e3 * found.bias.range_max_m}}}}};
 }
 
@@ -75,12 +75,12 @@ int run_depth(const DepthArguments& arguments) {
                      ": recorded at level blobs, which keeps no brightness, so dim_mm stays open; "
                      "expected level roi or full, or --no-brightness");
   }
-  const SightingSeries seen = find_tool(series, tool, {});
-  const DepthCalibration found = calibrate_depth(seen.sightings, tool, settings, series.what);
+  const ObservationSeries seen = find_tool(series, tool, {});
+  const DepthCalibration found = calibrate_depth(seen.observations, tool, settings, series.what);
 
   const Figures figures = figures_for(series, tool, seen, found);
   std::vector<double> misses_mm;
-  for (const double miss : found.misses_m) misses_mm.push_back(1e3 * miss);
+  for (const double miss : found.residuals_m) misses_mm.push_back(1e3 * miss);
   finish_calibration(
       arguments.output, figures,
       {{"depth.toml",

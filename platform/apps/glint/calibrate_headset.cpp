@@ -19,9 +19,9 @@ Figures figures_for(const RecordedFrames& recorded, const HeadsetCalibration& fo
   const HeadNoise& noise = found.noise;
   return {{"source", recorded.path},
           {"frames", found.frames},
-          {"drift_factor", found.best},
-          {"drift_factor_sigma", found.sigma * found.best},
-          {"head_late_ms", 1e3 * found.head_late_s},
+          {"drift_factor", found.best_factor},
+          {"drift_factor_sigma", found.sigma * found.best_factor},
+          {"head_late_ms", 1e3 * found.head_delay_s},
           {"head_late_sigma_ms", 1e3 * found.head_late_sigma_s},
           {"headset",
            {{"rest_mm", 1e3 * noise.rest_position_m},

@@ -38,7 +38,7 @@ double factor_of(const Eigen::Matrix2d& covariance, int i) {
 
 // The filter adapts its noise to its innovations by a factor; so a higher likelihood does not imply
 // a better prediction.
-bool foretells_as_well(const MotionCalibration& found) {
+bool predicts_as_well(const MotionCalibration& found) {
   constexpr double k_slack = 1.02;
   const auto holds = [](const MotionError& own, const MotionError& other) {
     return own.position_rms_m <= k_slack * other.position_rms_m &&
@@ -53,13 +53,13 @@ Figures figures_for(const std::string& what, const MotionArguments& arguments,
   return {{"source", what},
           {"declared_position_sigma_mm", arguments.position_sigma_mm},
           {"declared_rotation_sigma_deg", arguments.rotation_sigma_deg},
-          {"linear_noise_sigma_factor", factor_of(found.shift_covariance, 0)},
-          {"linear_damping_sigma_factor", factor_of(found.shift_covariance, 1)},
+          {"linear_noise_sigma_factor", factor_of(found.translation_covariance, 0)},
+          {"linear_damping_sigma_factor", factor_of(found.translation_covariance, 1)},
           {"angular_noise_sigma_factor", factor_of(found.rotation_covariance, 0)},
           {"angular_damping_sigma_factor", factor_of(found.rotation_covariance, 1)},
           {"poses", found.samples},
           {"poses_held_out", found.held_out},
-          {"foretells_as_well_as_built_in", foretells_as_well(found)},
+          {"foretells_as_well_as_built_in", predicts_as_well(found)},
           {"motion",
            {{"linear_noise_m2_s5", found.motion.linear_noise_m2_s5},
             {"linear_damping_1_s", found.motion.linear_damping_1_s},
@@ -92,14 +92,14 @@ int run_motion(const MotionArguments& arguments) {
 
   const Figures figures = figures_for(what, arguments, found);
   std::vector<double> misses_mm;
-  for (const double miss : found.misses_m) misses_mm.push_back(1e3 * miss);
+  for (const double miss : found.errors_m) misses_mm.push_back(1e3 * miss);
   finish_calibration(
       arguments.output, figures,
       {{"motion.toml",
         figures_toml(figures, "glint calibrate motion: a cell takes it by [motion] file")},
        {"motion.svg", residual_plot({"Motion: prediction 25 ms ahead, on the part held out",
                                      "error [mm]", misses_mm})}});
-  return foretells_as_well(found) ? 0 : 1;
+  return predicts_as_well(found) ? 0 : 1;
 }
 
 }  // namespace

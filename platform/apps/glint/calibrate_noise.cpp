@@ -23,7 +23,7 @@ struct NoiseArguments {
 };
 
 struct RestSeries {
-  std::vector<StampedPose> poses;
+  std::vector<TimedPose> poses;
   std::string what;
   std::optional<Cell> cell;  // of recorded frames; `tool` is its index there
   std::size_t tool = 0;
@@ -43,7 +43,7 @@ RestSeries recorded_series(const NoiseArguments& arguments) {
   return series;
 }
 
-std::vector<StampedPose> poses_in(const std::string& path, Time& begin) {
+std::vector<TimedPose> poses_in(const std::string& path, Time& begin) {
   PoseSource source;
   source.poses = path;
   PoseSeries series = load_pose_series(source);
@@ -57,8 +57,8 @@ RestSeries trajectory_series(const NoiseArguments& arguments) {
   series.poses = poses_in(arguments.poses, begin);
   series.what = arguments.poses;
   if (arguments.relative_to.empty()) return series;
-  std::vector<StampedPose> other = poses_in(arguments.relative_to, other_begin);
-  for (StampedPose& pose : other) pose.time = pose.time + (other_begin - begin);
+  std::vector<TimedPose> other = poses_in(arguments.relative_to, other_begin);
+  for (TimedPose& pose : other) pose.time = pose.time + (other_begin - begin);
   series.poses = relative_poses(series.poses, other, k_apart_max);
   series.what += " relative to " + arguments.relative_to;
   return series;
@@ -91,8 +91,8 @@ Figures figures_for(const RestSeries& series, const NoiseCalibration& found) {
     const Tool& tool = series.cell->tools.items[series.tool];
     const CameraUncertainty errors =
         marker_errors_of(found, *series.cell, tool, series.poses[series.poses.size() / 2].pose);
-    figures["uncertainty"] = {{"slow_range_mm", 1e3 * errors.slow_range_m},
-                              {"slow_centroid_px", errors.slow_centroid_px},
+    figures["uncertainty"] = {{"slow_range_mm", 1e3 * errors.correlated_range_m},
+                              {"slow_centroid_px", errors.correlated_centroid_px},
                               {"fast_share", errors.fast_share},
                               {"fast_s", found.correlation.fast_s},
                               {"slow_s", found.correlation.slow_s}};

@@ -36,7 +36,7 @@ Figures figures_for(const PoseSeries& series, const PivotResult& result) {
           {"poses_used", result.poses_used},
           {"outliers", result.outliers},
           {"frames_without_pose", series.unsolved},
-          {"poses_that_tell_as_one", result.correlated},
+          {"poses_that_tell_as_one", result.variance_inflation},
           {"sigma_reached", result.sigma_reached}};
 }
 
@@ -71,7 +71,7 @@ int run_pivot(const PivotArguments& arguments) {
     tool.tip_m = result.tip_m;
     tool.tip_sigma_m = std::sqrt(result.tip_covariance_m2.trace() / 3);
     const std::string from = "tip by glint calibrate pivot from " + series.what + ", sigma " +
-                             say_mm(result.tip_sigma_m);
+                             format_mm(result.tip_sigma_m);
     files.push_back({file_name_of(tool) + ".toml", tool_toml_text(tool, from)});
   }
   finish_calibration(arguments.output, figures, files);

@@ -25,7 +25,7 @@ Vector3 upwards(const Tool& tool) {
 
 // Rotates the markers about the tip so that the tool's z is along the axis.
 Tool turned_to_axis(Tool tool, const Vector3& axis) {
-  const Quaternion turn = turn_between(axis, Vector3::UnitZ());
+  const Quaternion turn = rotation_between(axis, Vector3::UnitZ());
   for (int i = 0; i < tool.marker_count; ++i) {
     Vector3& marker = tool.markers_m[static_cast<std::size_t>(i)];
     marker = turn * (marker - tool.tip_m) + tool.tip_m;
@@ -47,7 +47,7 @@ Figures figures_for(const PoseSeries& series, const SpinResult& result) {
           {"poses_used", result.poses_used},
           {"outliers", result.outliers},
           {"frames_without_pose", series.unsolved},
-          {"poses_that_tell_as_one", result.correlated},
+          {"poses_that_tell_as_one", result.variance_inflation},
           {"sigma_reached", result.sigma_reached}};
 }
 
@@ -55,7 +55,7 @@ int run_spin(const SpinArguments& arguments) {
   const PoseSeries series = load_pose_series(arguments.source);
   SpinSettings settings;
   settings.stop_sigma_rad = arguments.sigma_deg / k_degrees_per_radian;
-  if (series.tool) settings.towards_m = upwards(*series.tool);
+  if (series.tool) settings.axis_side_m = upwards(*series.tool);
   const SpinResult result = calibrate_spin(series.poses, settings, series.what);
 
   const Figures figures = figures_for(series, result);
@@ -67,7 +67,7 @@ int run_spin(const SpinArguments& arguments) {
        residual_plot({"Spin: how far the axis is off", "angle [deg]", wobble_deg, &result.kept})}};
   if (series.tool) {
     const std::string from = "z along the axis by glint calibrate spin from " + series.what +
-                             ", sigma " + say_degrees(result.axis_sigma_rad);
+                             ", sigma " + format_degrees(result.axis_sigma_rad);
     files.push_back({file_name_of(*series.tool) + ".toml",
                      tool_toml_text(turned_to_axis(*series.tool, result.axis), from)});
   }

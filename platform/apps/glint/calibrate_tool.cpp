@@ -20,7 +20,7 @@ namespace {
 
 struct ToolArguments {
   std::string points, recording, config, like, name = "tool", shape = "sphere";
-  double radius_mm = 5.75, longest_mm = 0, longest_sigma_mm = 0.1, noise_mm = 1.0;
+  double radius_mm = 5.75, longest_side_mm = 0, longest_sigma_mm = 0.1, noise_mm = 1.0;
   CalibrationOutput output;
 };
 
@@ -36,11 +36,11 @@ Figures figures_for(const ToolArguments& arguments, const ToolGeometry& found) {
           {"frame", arguments.recording.empty() ? "as in file" : "camera"},
           {"markers_mm", markers},
           {"marker_sigma_mm", sigmas},
-          {"seen_in_frames", found.seen},
+          {"seen_in_frames", found.frame_counts},
           {"noise_mm", 1e3 * found.noise_m},
           {"scale", found.scale},
           {"drawn_rms_mm", 1e3 * found.drawn_rms_m},
-          {"least_turn_deg", found.turn_rad * k_degrees_per_radian},
+          {"least_turn_deg", found.rotation_spread_rad * k_degrees_per_radian},
           {"frames", found.frames},
           {"frames_used", found.frames_used},
           {"points", found.points},
@@ -54,12 +54,12 @@ std::vector<PointFrame> points_for(const ToolArguments& arguments, const Tool& t
   if (arguments.recording.empty()) return load_points(arguments.points);
   RecordedFrames recorded = open_recorded(arguments.recording, arguments.config);
   std::vector<PointFrame> points = recorded_points(recorded, tool, failures);
-  settings.slow_range_m = slow_range_of_mean(points, recorded.cell.camera);
+  settings.correlated_range_m = slow_range_of_mean(points, recorded.cell.camera);
   return points;
 }
 
 // Returns the tool whose markers are calibrated: that of --like, or a new one without markers.
-Tool tool_to_fill(const ToolArguments& arguments) {
+Tool uncalibrated_tool(const ToolArguments& arguments) {
   if (!arguments.like.empty()) return named_tool(arguments.like);
   Tool tool;
   set_name(tool, arguments.name, "--name");
@@ -72,10 +72,10 @@ int run_tool(const ToolArguments& arguments) {
   if (arguments.points.empty() == arguments.recording.empty()) {
     throw InputError("calibrate tool: expected either --points FILE or --recording SOURCE");
   }
-  Tool tool = tool_to_fill(arguments);  // throws before anything is computed
+  Tool tool = uncalibrated_tool(arguments);  // throws before anything is computed
   ToolGeometrySettings settings;
   settings.noise_m = 1e-3 * arguments.noise_mm;
-  settings.longest_side_m = 1e-3 * arguments.longest_mm;
+  settings.longest_side_m = 1e-3 * arguments.longest_side_mm;
   settings.longest_side_sigma_m = 1e-3 * arguments.longest_sigma_mm;
   if (!arguments.like.empty()) settings.drawn = tool;
   std::vector<std::string> failures;
@@ -128,7 +128,7 @@ void add_calibrate_tool(CLI::App& calibrate, int& exit_code) {
       ->excludes(like)
       ->capture_default_str();
   command
-      ->add_option("--longest-mm", arguments->longest_mm,
+      ->add_option("--longest-mm", arguments->longest_side_mm,
                    "the known distance of the two markers farthest apart; 0: as measured")
       ->check(in_range(0.0, 2000.0));
   command

@@ -95,11 +95,11 @@ void add_experiment(CLI::App& app, int& exit_code) {
                 arguments, exit_code);
   for (const CaseExperiment& experiment : case_experiments()) {
     CLI::App& sub = add_one(*command, experiment.name, experiment.what, arguments);
-    if (experiment.wants_data) {
+    if (experiment.needs_data) {
       sub.add_option("--data", arguments->data, "folder of the recordings")->required();
       sub.footer(std::string("Example: glint experiment ") + experiment.name + " --data DIR");
     }
-    if (experiment.counts_tries) {
+    if (experiment.accepts_tries) {
       sub.add_option("--tries", arguments->tries,
                      "tries in all classes together (of field: devices), in place of the other "
                      "cases; finished ones are in --out and not run again")

@@ -88,7 +88,7 @@ ExportedRows export_rows(const FrameExportKind& kind, const FrameExportArguments
   wanted.tool = select_tool(recorded.cell, arguments.tool);
   if (name == k_points.name) return export_points(recorded, wanted.tool, out);
   if (name == k_tum.name) return export_tum(recorded, wanted, out);
-  return export_truth(recorded, wanted, out);
+  return export_ground_truth(recorded, wanted, out);
 }
 
 int run_frame_export(const FrameExportKind& kind, const FrameExportArguments& arguments) {
@@ -99,7 +99,7 @@ int run_frame_export(const FrameExportKind& kind, const FrameExportArguments& ar
         "simulator's settings");
   }
   RecordedFrames recorded = open_recorded(arguments.source, arguments.config, arguments.kind);
-  GrowingText file(arguments.out);
+  LineWriter file(arguments.out);
   Progress progress("exporting");
   int lines = 0;
   const ExportedRows rows = export_rows(kind, arguments, recorded, [&](std::string_view line) {
@@ -108,7 +108,7 @@ int run_frame_export(const FrameExportKind& kind, const FrameExportArguments& ar
   });
   progress.clear();
   file.finish();
-  const bool piped = is_written_in_place(arguments.out);  // the rows may be on standard output
+  const bool piped = is_special_file(arguments.out);  // the rows may be on standard output
   nlohmann::ordered_json figures{{"source", arguments.source},
                                  {"kind", kind.name},
                                  {"file", arguments.out},

@@ -66,13 +66,13 @@ nlohmann::ordered_json blob_json(const Blob& blob, const Marker* marker) {
                               {"saturated", (blob.flags & k_blob_saturated) != 0},
                               {"touches_edge", (blob.flags & k_blob_touches_edge) != 0},
                               {"has_neighbour", (blob.flags & k_blob_has_neighbour) != 0},
-                              {"uneven", (blob.flags & k_blob_uneven) != 0},
+                              {"uneven", (blob.flags & k_blob_partial_or_merged) != 0},
                               {"sigma_x_px", std::sqrt(blob.variance_px2[0])},
                               {"sigma_y_px", std::sqrt(blob.variance_px2[1])}};
   if (marker != nullptr && (marker->flags & k_marker_no_depth) == 0) {
     item["range_m"] = marker->surface_range_m;
     item["range_sigma_m"] = marker->range_sigma_m;
-    item["ring_depth"] = (marker->flags & k_marker_ring_depth) != 0;
+    item["ring_depth"] = (marker->flags & k_marker_annulus_depth) != 0;
     item["wrapped"] = (marker->flags & k_marker_wrapped) != 0;
   }
   return item;
@@ -170,7 +170,7 @@ Inspected inspected_recording(const InspectArguments& arguments) {
       after_s = (next.frame.arrival - Time{}).seconds();
       break;
     }
-    if (frames++ > 0) inspected.source->give_back(current);
+    if (frames++ > 0) inspected.source->release_pixels(current);
     current = next;
     inspected.tracker->input<Frame>() = current.frame;
     inspected.tracker->input<HeadPose>() = current.head;
@@ -212,7 +212,7 @@ nlohmann::ordered_json rows_json(const std::vector<CheckRow>& rows) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const CheckRow& row : rows) {
     list.push_back({{"check", row.check},
-                    {"holds", row.holds},
+                    {"holds", row.passes},
                     {"found", row.found},
                     {"next_step", row.next_step}});
   }
@@ -223,7 +223,7 @@ void print_rows(const ToolDiagnosis& diagnosis) {
   std::printf("%s: %s\n", printable(diagnosis.tool).c_str(),
               diagnosis.cause.empty() ? "tracked" : ("not tracked: " + diagnosis.cause).c_str());
   for (const CheckRow& row : diagnosis.rows) {
-    std::printf("  %-3s %-19s %s\n", row.holds ? "ok" : "NO", row.check.c_str(),
+    std::printf("  %-3s %-19s %s\n", row.passes ? "ok" : "NO", row.check.c_str(),
                 printable(row.found).c_str());
     if (!row.next_step.empty()) std::printf("      next: %s\n", printable(row.next_step).c_str());
   }
@@ -255,10 +255,10 @@ int inspect(const InspectArguments& arguments) {
     ToolDiagnosis& diagnosis = all[i];
     if (inspected.at_that_time) {
       diagnosis.rows.insert(diagnosis.rows.begin(), *inspected.at_that_time);
-      if (!inspected.at_that_time->holds) diagnosis.cause = inspected.at_that_time->check;
+      if (!inspected.at_that_time->passes) diagnosis.cause = inspected.at_that_time->check;
     }
     const Track& track = estimates.tracks[i];
-    if (track.seen_now) found.push_back(tool_json(cell.tools.items[i], track));
+    if (track.measured_now) found.push_back(tool_json(cell.tools.items[i], track));
     reasons.push_back({{"tool", diagnosis.tool},
                        {"reason", std::string(name_of(track.reason))},
                        {"cause", diagnosis.cause},
@@ -271,8 +271,8 @@ int inspect(const InspectArguments& arguments) {
   make_folder(arguments.out);
   const std::string picture =
       (std::filesystem::path(arguments.out) / (inspected.picture_name + ".png")).string();
-  write_picture(picture, tracker.input<Frame>(), tracker.token<Rois>(), blobs, markers, lines,
-                names);
+  write_detection_image(picture, tracker.input<Frame>(), tracker.token<Rois>(), blobs, markers,
+                        lines, names);
   std::printf("%-16s %s\n", "picture", picture.c_str());
   write_json(arguments.json,
              {{"frame", inspected.text},

@@ -89,7 +89,7 @@ std::unique_ptr<Occupancy> occupancy_of(const MapArguments& arguments,
 
 void publish(const MapArguments& arguments, const HostCloud& map, const Occupancy* occupancy) {
   if (arguments.publish.seconds <= 0) return;
-  SurroundingsPublisher publisher(arguments.publish.settings);
+  MapPublisher publisher(arguments.publish.settings);
   const Time now = publishing_time();
   if (const std::size_t left = publisher.publish_cloud(map.points, map.normals, now); left > 0) {
     std::printf("notice  %zu points not published: too many; a larger --voxel-mm\n", left);
@@ -120,7 +120,7 @@ int make_map(const MapArguments& arguments) {
                      std::to_string(chain.counts().measured) +
                      " measured points; expected surfaces with 9 points within 5 cm of each");
   }
-  if (!arguments.keep_uneven) chain.snap();
+  if (!arguments.keep_uneven) chain.project_onto_planes();
   const std::unique_ptr<Occupancy> occupancy =
       occupancy_of(arguments, sequence, settings.depth, chain.map());
   print_table(chain.counts(), chain.planes());
@@ -134,8 +134,8 @@ int make_map(const MapArguments& arguments) {
     write_cloud(in_folder(name), map);
     std::printf("written  %s\n", in_folder(name).c_str());
   }
-  write_map_picture(in_folder("map.png"), chain.map(), chain.support(), sequence.camera,
-                    sequence.frames[sequence.frames.size() / 2].T_world_camera);
+  write_map_image(in_folder("map.png"), chain.map(), chain.support(), sequence.camera,
+                  sequence.frames[sequence.frames.size() / 2].T_world_camera);
   std::printf("written  %s\n", in_folder("map.png").c_str());
   if (occupancy != nullptr) {
     write_text(arguments.octomap, occupancy->file_bytes());

@@ -50,7 +50,7 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
                 static_cast<double>(first.time.nanoseconds) * 1e-9, at.x(), at.y(), at.z());
   }
   std::printf("poses while held %lld, taken %lld; largest sigma an axis %.2f mm\n",
-              static_cast<long long>(counts.poses), static_cast<long long>(counts.taken),
+              static_cast<long long>(counts.poses), static_cast<long long>(counts.poses_accepted),
               1e3 * largest_sigma_m(drawn.path));
   if (spacing_m < 2 * largest_sigma_m(drawn.path)) {
     std::printf(
@@ -67,9 +67,10 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
   notice(counts.not_in_robot, "poses left out: not in the robot's frame");
   notice(counts.not_usable, "poses left out: out of order or a jump");
   notice(counts.gaps, "strokes ended where the pen was lost; the next pose began another");
-  notice(counts.presses_in_vain, "presses without effect: no pose, or nothing to delete or undo");
-  notice(counts.points_left_out, "points left out: more than --points-max");
-  notice(counts.strokes_left_out, "elements left out: more than there is room for");
+  notice(counts.presses_without_effect,
+         "presses without effect: no pose, or nothing to delete or undo");
+  notice(counts.points_over_capacity, "points left out: more than --points-max");
+  notice(counts.strokes_over_capacity, "elements left out: more than there is room for");
 }
 
 nlohmann::ordered_json figures(const RecordedPath& drawn) {
@@ -85,14 +86,14 @@ nlohmann::ordered_json figures(const RecordedPath& drawn) {
           {"points", point_count(drawn.path)},
           {"largest_sigma_mm", 1e3 * largest_sigma_m(drawn.path)},
           {"poses", counts.poses},
-          {"taken", counts.taken},
+          {"taken", counts.poses_accepted},
           {"not_measured", counts.not_measured},
           {"not_in_robot", counts.not_in_robot},
           {"not_usable", counts.not_usable},
           {"gaps", counts.gaps},
-          {"presses_in_vain", counts.presses_in_vain},
-          {"points_left_out", counts.points_left_out},
-          {"strokes_left_out", counts.strokes_left_out},
+          {"presses_in_vain", counts.presses_without_effect},
+          {"points_left_out", counts.points_over_capacity},
+          {"strokes_left_out", counts.strokes_over_capacity},
           {"missing", losses_json(drawn.losses)}};
 }
 
@@ -102,7 +103,7 @@ void publish(const RecordedPath& drawn, const PublishOptions& options) {
   for (const PathElement& element : drawn.path) {
     points.insert(points.end(), element.points.begin(), element.points.end());
   }
-  SurroundingsPublisher publisher(options.settings);
+  MapPublisher publisher(options.settings);
   publisher.publish_path(points, drawn.unix_offset, publishing_time());
   keep_publishing(publisher, options);
 }

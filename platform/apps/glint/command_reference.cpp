@@ -16,13 +16,14 @@ namespace {
 
 void export_model(const ReferenceArguments& arguments, const RobotModel& robot) {
   const RobotCloud cloud = sample_robot(robot, arguments.points);
-  write_robot_cloud(arguments.exported, cloud);
-  std::printf("model      %s: %zu points of %zu links, %.1f mm apart\n", arguments.exported.c_str(),
-              cloud.points.size(), cloud.links.size(), 1e3 * static_cast<double>(cloud.spacing_m));
+  write_robot_cloud(arguments.export_file, cloud);
+  std::printf("model      %s: %zu points of %zu links, %.1f mm apart\n",
+              arguments.export_file.c_str(), cloud.points.size(), cloud.links.size(),
+              1e3 * static_cast<double>(cloud.spacing_m));
 }
 
 int run_reference(ReferenceArguments arguments) {
-  check_given(arguments);
+  require_inputs(arguments);
   std::unique_ptr<ReferenceListener> listener = listener_of(arguments);
   const AnyRobot robot = robot_of(arguments, listener.get());
   const auto* const meshes = std::get_if<RobotModel>(&robot);
@@ -30,17 +31,17 @@ int run_reference(ReferenceArguments arguments) {
     export_model(arguments, *meshes);
     return 0;
   }
-  const Pose start = start_of(arguments, robot, listener.get());
+  const Pose start = initial_pose_of(arguments, robot, listener.get());
   listener.reset();
   const std::vector<SceneFrame> frames =
       std::visit([&](const auto& any) { return read_scene(arguments.scene, any); }, robot);
   const FindReferenceSettings settings = settings_of(arguments);
   const Reference reference = find_reference(frames, start, settings);
-  const ReferenceFacts facts{std::visit([](const auto& any) { return any.name; }, robot),
-                             meshes != nullptr ? meshes->triangles_skipped : 0, frames.size(),
-                             settings.range};
+  const ReferenceContext facts{std::visit([](const auto& any) { return any.name; }, robot),
+                               meshes != nullptr ? meshes->triangles_skipped : 0, frames.size(),
+                               settings.range};
   print_reference(reference, facts);
-  if (!arguments.exported.empty()) export_model(arguments, *meshes);
+  if (!arguments.export_file.empty()) export_model(arguments, *meshes);
   write_json(arguments.json, reference_json(reference, facts));
   return reference.verdict == ReferenceVerdict::accepted ? 0 : 1;
 }
@@ -73,7 +74,7 @@ void add_reference(CLI::App& app, int& exit_code) {
   command->add_option("--camera", scene.camera, "ROS camera_info, YAML");
   command->add_option("--mask", scene.masks, "the robot's pixels, a file for each depth");
   command
-      ->add_option("--seed", arguments->seed,
+      ->add_option("--seed", arguments->initial_guess,
                    "x,y,z,roll,pitch,yaw of T_camera_base: metres, radians, fixed axes")
       ->delimiter(',')
       ->expected(6);
@@ -95,7 +96,7 @@ void add_reference(CLI::App& app, int& exit_code) {
                    "(/joint_states), T_camera_base (/initialpose)")
       ->check(in_range(0.1, 86400.0));
   add_network_options(*command, arguments->network);
-  command->add_option("--export-model", arguments->exported,
+  command->add_option("--export-model", arguments->export_file,
                       "write joints and points of the links' surfaces here, as PLY: what a board "
                       "reads in place of URDF and meshes");
   command->add_option("--points", arguments->points, "how many points that has")

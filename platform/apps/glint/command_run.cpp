@@ -65,15 +65,15 @@ Cell cell_of(const RunArguments& arguments) {
   if (arguments.as_fast_as_can_be) cell.realtime = false;
   if (arguments.no_dds) cell.dds.on = false;
   if (arguments.method == "seed") {
-    cell.method = Method::seed;
+    cell.method = Method::baseline;
     cell.record.level = "outputs";  // a run of the baseline cannot be replayed
   }
   return cell;
 }
 
 // Reads keys and prints their functions; does nothing without --keys.
-void listen_to_keys(const RunArguments& arguments, const Cell& cell,
-                    std::optional<KeyTerminal>& terminal) {
+void open_key_terminal(const RunArguments& arguments, const Cell& cell,
+                       std::optional<KeyTerminal>& terminal) {
   if (!arguments.keys) return;
   if (!cell.realtime)
     throw InputError(
@@ -124,11 +124,11 @@ int run(const RunArguments& arguments) {
   options.trace = arguments.trace;
   options.stop = &stop;
   std::optional<KeyTerminal> terminal;
-  listen_to_keys(arguments, cell, terminal);
-  if (terminal) options.keys = terminal->descriptor();
+  open_key_terminal(arguments, cell, terminal);
+  if (terminal) options.key_terminal = terminal->descriptor();
   make_folder(arguments.out);
   make_folder_of(arguments.json);
-  ReservedRoom room(arguments.json);
+  ReservedDiskSpace room(arguments.json);
   const FolderLock lock(arguments.out);
   Progress progress("tracking");
   options.out = arguments.out;

@@ -33,8 +33,8 @@ Figures figures_for(const CalibrationFinding& finding) {
           {"sigma", unit.per_base * finding.sigma},
           {"unit", unit.text},
           {"shown", finding.axes > 0},
-          {"stated_sigmas", finding.stated_sigmas},
-          {"agrees", !finding.named}};
+          {"stated_sigmas", finding.size_in_stated_sigmas},
+          {"agrees", !finding.exceeds_stated}};
 }
 
 Figures figures_for(const TipSeries& series, const Verification& found,
@@ -42,14 +42,14 @@ Figures figures_for(const TipSeries& series, const Verification& found,
   Figures figures = {{"source", series.what},
                      {"frame", series.in_world ? "world" : "camera"},
                      {"frames", series.frames},
-                     {"frames_with_tool", series.sightings.size()},
-                     {"frames_refused", series.refused},
+                     {"frames_with_tool", series.observations.size()},
+                     {"frames_refused", series.rejected},
                      {"touches_of_first_point", found.first_touches},
                      {"touches_of_second_point", found.second_touches},
                      {"other_holds", found.other_holds},
                      {"lean_rms_deg", figures_of(found.spread_rad, k_degrees_per_radian)},
                      {"rest_s", found.rest_s}};
-  if (found.lacks.empty()) {
+  if (found.missing.empty()) {
     figures["range_mm"] = 1e3 * found.range_m;
     figures["distance_mm"] = 1e3 * found.distance_m;
     figures["known_distance_mm"] = arguments.distance_mm;
@@ -57,14 +57,14 @@ Figures figures_for(const TipSeries& series, const Verification& found,
     figures["scale"] = figures_for(found.scale);
     figures["rest"] = figures_for(found.rest);
   } else {
-    figures["not_judged"] = found.lacks;
+    figures["not_judged"] = found.missing;
   }
   for (const CalibrationFinding& finding : found.calibration)
     figures[std::string(name_of(finding.source))] = figures_for(finding);
   figures["verdict"] = {{"agrees", found.agrees},
                         {"confidence", k_confidence},
                         {"probability_min", found.level},
-                        {"not_shown", not_shown(found)}};
+                        {"not_shown", not_covered(found)}};
   return figures;
 }
 
@@ -85,24 +85,24 @@ void print(const Figures& figures, const Verification& found) {
   for (auto it = above.begin(); it != above.end();)
     it = it->is_object() ? above.erase(it) : std::next(it);
   std::fputs(printable_lines(figures_table(above)).c_str(), stdout);
-  if (found.lacks.empty()) {
+  if (found.missing.empty()) {
     row("repeatability, rms", check_text(found.repeatability));
     row("scale, distance error", check_text(found.scale));
     row("rest, rms", check_text(found.rest));
   }
   for (const CalibrationFinding& finding : found.calibration) {
     if (finding.axes == 0) continue;
-    row(finding.named ? "CALIBRATION" : "calibration", text_of(finding));
+    row(finding.exceeds_stated ? "CALIBRATION" : "calibration", text_of(finding));
   }
   row("verdict", found.agrees ? "agrees with the stated uncertainty (95 %)"
                               : "DOES NOT AGREE with the stated uncertainty (95 %)");
-  for (const std::string& line : not_shown(found)) row("not shown", line);
+  for (const std::string& line : not_covered(found)) row("not shown", line);
 }
 
 int run_verify(const VerifyArguments& arguments) {
   RecordedFrames recorded = open_recorded(arguments.recording, arguments.config);
   const std::size_t tool = select_tool(recorded.cell, arguments.tool);
-  const TipSeries series = sight_tips(recorded, tool);
+  const TipSeries series = observe_tips(recorded, tool);
   const Verification found =
       verify_touches(series, {1e-3 * arguments.distance_mm, 1e-3 * arguments.distance_sigma_mm});
   const Figures figures = figures_for(series, found, arguments);

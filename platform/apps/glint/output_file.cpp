@@ -28,7 +28,7 @@ void make_folder_of(const std::string& path) {
 
 void write_text(const std::string& path, const std::string& text) {
   make_folder_of(path);
-  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
+  if (const std::string reason = write_file_atomically(path, text); !reason.empty()) {
     throw InputError(path + ": cannot be written: " + reason + "; expected a place for a file");
   }
 }
@@ -41,37 +41,36 @@ int report_losses(const std::vector<std::string>& failures) {
   return failures.empty() ? 0 : 1;
 }
 
-GrowingText::GrowingText(const std::string& path)
-    : path_(path), in_place_(is_written_in_place(path)) {
+LineWriter::LineWriter(const std::string& path) : path_(path), in_place_(is_special_file(path)) {
   make_folder_of(path);
   part_ =
       in_place_ ? PartFile{path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC)} : open_part_file(path);
   if (part_.descriptor < 0) fail();
 }
 
-GrowingText::~GrowingText() {
+LineWriter::~LineWriter() {
   if (part_.descriptor < 0) return;
   ::close(part_.descriptor);
   if (!in_place_) ::unlink(part_.path.c_str());
 }
 
-void GrowingText::fail() const {
+void LineWriter::fail() const {
   throw InputError(path_ + ": cannot be written: " + std::generic_category().message(errno) +
                    "; expected a place for a file");
 }
 
-void GrowingText::write_out() {
+void LineWriter::write_out() {
   if (!write_all(part_.descriptor, waiting_)) fail();
   waiting_.clear();
 }
 
-void GrowingText::add(std::string_view line) {
+void LineWriter::add(std::string_view line) {
   constexpr std::size_t k_waiting_max = std::size_t{64} << 10;
   waiting_.append(line) += '\n';
   if (waiting_.size() >= k_waiting_max) write_out();
 }
 
-void GrowingText::finish() {
+void LineWriter::finish() {
   write_out();
   const bool closed = ::close(std::exchange(part_.descriptor, -1)) == 0;
   if (in_place_) {
@@ -84,7 +83,7 @@ void GrowingText::finish() {
   }
 }
 
-ReservedRoom::ReservedRoom(const std::string& path) {
+ReservedDiskSpace::ReservedDiskSpace(const std::string& path) {
   constexpr off_t k_bytes = off_t{64} << 10;  // a summary with its notices has about 10 kB
   if (path.empty()) return;
   const std::string folder = std::filesystem::path(path).parent_path().string();
@@ -93,7 +92,7 @@ ReservedRoom::ReservedRoom(const std::string& path) {
   if (descriptor_ >= 0 && ::fallocate(descriptor_, 0, 0, k_bytes) != 0) release();
 }
 
-void ReservedRoom::release() noexcept {
+void ReservedDiskSpace::release() noexcept {
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
 }

@@ -22,14 +22,14 @@ void write_json(const std::string& path, const nlohmann::ordered_json& figures);
 
 // Text file that is written line by line beside its final path; finish() gives it its name. A path
 // that is not a regular file is written in place.
-class GrowingText {
+class LineWriter {
  public:
   // Creates the folder. Throws InputError if the file cannot be created.
-  explicit GrowingText(const std::string& path);
+  explicit LineWriter(const std::string& path);
   // Removes an unfinished file.
-  ~GrowingText();
-  GrowingText(const GrowingText&) = delete;
-  GrowingText& operator=(const GrowingText&) = delete;
+  ~LineWriter();
+  LineWriter(const LineWriter&) = delete;
+  LineWriter& operator=(const LineWriter&) = delete;
 
   // `line` without its newline. add() and finish() throw InputError if a write fails.
   void add(std::string_view line);
@@ -50,13 +50,13 @@ void make_folder_of(const std::string& path);
 void make_folder(const std::string& path);
 
 // Disk space reserved for a file that is written last, so that earlier output cannot use it.
-class ReservedRoom {
+class ReservedDiskSpace {
  public:
   // Reserves beside `path`; nothing for an empty path or a file system without support.
-  explicit ReservedRoom(const std::string& path);
-  ~ReservedRoom() { release(); }
-  ReservedRoom(const ReservedRoom&) = delete;
-  ReservedRoom& operator=(const ReservedRoom&) = delete;
+  explicit ReservedDiskSpace(const std::string& path);
+  ~ReservedDiskSpace() { release(); }
+  ReservedDiskSpace(const ReservedDiskSpace&) = delete;
+  ReservedDiskSpace& operator=(const ReservedDiskSpace&) = delete;
 
   void release() noexcept;
 

@@ -15,8 +15,9 @@ double microseconds_of(std::optional<std::int64_t> ns) {
 
 }  // namespace
 
-RunPlan planned_run(const Cell& cell, const std::string& board_name, const std::string& plan_file) {
-  if (board_name.empty() && plan_file.empty()) return plan_by_rule(cell);
+RunSchedule planned_run(const Cell& cell, const std::string& board_name,
+                        const std::string& plan_file) {
+  if (board_name.empty() && plan_file.empty()) return schedule_by_rule(cell);
   if (board_name.empty() || plan_file.empty()) {
     throw InputError("--board \"" + board_name + "\" and --plan \"" + plan_file +
                      "\": expected both, for a plan holds on one board's costs");
@@ -25,13 +26,13 @@ RunPlan planned_run(const Cell& cell, const std::string& board_name, const std::
   CheckInput input{cell, board, {}, limits_of(cell), {}};
   TaskModel model = task_model_of(cell, board.table(), board.system, input.limits);
   input.plan = validated_plan(plan_file, model, input.limits);
-  RunPlan plan = plan_of(input.plan, model, plan_file);
+  RunSchedule plan = schedule_of(input.plan, model, plan_file);
   const CheckResult result = check(input, {});
   for (const Chain& chain : result.assessment.chains) {
     if (chain.name == "frame_to_can") plan.frame_to_can_bound_us = microseconds_of(chain.total_ns);
   }
-  plan.doubts = void_reasons(input, result);
-  plan.doubts.insert(plan.doubts.end(), result.fails.begin(), result.fails.end());
+  plan.caveats = invalid_reasons(input, result);
+  plan.caveats.insert(plan.caveats.end(), result.fails.begin(), result.fails.end());
   plan.frame_bound_us = microseconds_of(result.assessment.groups.at(0).response_ns);
   plan.tick_bound_us = microseconds_of(result.assessment.groups.at(1).response_ns);
   if (plan.background) {

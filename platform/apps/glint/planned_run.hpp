@@ -9,7 +9,7 @@ namespace glint {
 
 // Throws InputError for a board of another build, an invalid plan, or one without the other. Both
 // empty: schedule by rule, without bounds.
-[[nodiscard]] RunPlan planned_run(const Cell& cell, const std::string& board,
-                                  const std::string& plan);
+[[nodiscard]] RunSchedule planned_run(const Cell& cell, const std::string& board,
+                                      const std::string& plan);
 
 }  // namespace glint

@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-constexpr auto k_look_again = std::chrono::milliseconds(50);
+constexpr auto k_poll_period = std::chrono::milliseconds(50);
 constexpr Duration k_receipts_limit = milliseconds(5000);
 
 }  // namespace
@@ -33,17 +33,17 @@ void add_publish_options(CLI::App& command, PublishOptions& options) {
 
 Time publishing_time() { return Time{dds_time()}; }
 
-void keep_publishing(const SurroundingsPublisher& publisher, const PublishOptions& options) {
+void keep_publishing(const MapPublisher& publisher, const PublishOptions& options) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
-  int most = 0;
+  int readers_max = 0;
   while (Clock::now() < end) {
-    most = std::max(most, publisher.listeners());
-    std::this_thread::sleep_for(k_look_again);
+    readers_max = std::max(readers_max, publisher.matched_readers());
+    std::this_thread::sleep_for(k_poll_period);
   }
-  const bool all = publisher.wait_for_receipts(k_receipts_limit);
-  std::printf("published  %.1f s, listeners to every topic %d%s\n", options.seconds, most,
-              all ? "" : "; not all have received everything");
+  const bool all_acknowledged = publisher.wait_for_acknowledgements(k_receipts_limit);
+  std::printf("published  %.1f s, listeners to every topic %d%s\n", options.seconds, readers_max,
+              all_acknowledged ? "" : "; not all have received everything");
 }
 
 }  // namespace glint

@@ -22,6 +22,6 @@ void add_publish_options(CLI::App& command, PublishOptions& options);
 [[nodiscard]] Time publishing_time();
 
 // Waits for options.seconds, so that late subscribers are served too; prints their largest number.
-void keep_publishing(const SurroundingsPublisher& publisher, const PublishOptions& options);
+void keep_publishing(const MapPublisher& publisher, const PublishOptions& options);
 
 }  // namespace glint

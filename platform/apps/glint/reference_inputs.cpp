@@ -22,7 +22,7 @@ Pose checked(const Pose& pose, const std::string& what) {
 }
 
 // Requires a guess in the camera's frame, if both the guess and the calibration name a frame.
-void check_frame(const HeardGuess& guess, const std::string& camera_file) {
+void check_frame(const ReceivedInitialPose& guess, const std::string& camera_file) {
   const std::string found = guess.frame.data(), expected = read_camera_frame(camera_file);
   if (found.empty() || expected.empty() || found == expected) return;
   throw InputError(std::string(k_initial_pose_topic) + ": a guess in frame \"" + found +
@@ -32,14 +32,14 @@ void check_frame(const HeardGuess& guess, const std::string& camera_file) {
 
 }  // namespace
 
-void check_given(const ReferenceArguments& arguments) {
+void require_inputs(const ReferenceArguments& arguments) {
   const bool listens = arguments.listen_s > 0, exports = arguments.only_exports();
   const std::pair<const char*, bool> wanted[] = {
       {"--depth", !exports && arguments.scene.depth.empty()},
       {"--camera", !exports && arguments.scene.camera.empty()},
       {"--urdf", !listens && !arguments.has_robot()},
       {"--joints", !listens && !exports && arguments.scene.joints.empty()},
-      {"--seed", !listens && !exports && arguments.seed.empty()}};
+      {"--seed", !listens && !exports && arguments.initial_guess.empty()}};
   for (const auto& [option, missing] : wanted) {
     if (missing) {
       throw InputError(std::string(option) +
@@ -48,7 +48,7 @@ void check_given(const ReferenceArguments& arguments) {
                        "--export-model alone");
     }
   }
-  if (!arguments.exported.empty() && !arguments.model.empty()) {
+  if (!arguments.export_file.empty() && !arguments.model.empty()) {
     throw InputError("--export-model: expected --urdf, not --model: a cloud has no surface");
   }
 }
@@ -58,8 +58,8 @@ FindReferenceSettings settings_of(const ReferenceArguments& arguments) {
   settings.shared_errors.depth_sigma_m = 1e-3 * arguments.depth_bias_mm;
   if (arguments.range.empty()) return settings;
   settings.range = {arguments.range[0], arguments.range[1] / k_degrees_per_radian};
-  if (!(settings.range.shift_m > 0 && settings.range.shift_m <= 2) ||
-      !(settings.range.turn_rad > 0 && arguments.range[1] <= 180)) {
+  if (!(settings.range.translation_m > 0 && settings.range.translation_m <= 2) ||
+      !(settings.range.rotation_rad > 0 && arguments.range[1] <= 180)) {
     throw InputError("--search-range: expected metres of (0, 2] and degrees of (0, 180]");
   }
   return settings;
@@ -68,7 +68,7 @@ FindReferenceSettings settings_of(const ReferenceArguments& arguments) {
 std::unique_ptr<ReferenceListener> listener_of(const ReferenceArguments& arguments) {
   const bool exports = arguments.only_exports();
   const ReferenceNeeds needs{!arguments.has_robot(), !exports && arguments.scene.joints.empty(),
-                             !exports && arguments.seed.empty()};
+                             !exports && arguments.initial_guess.empty()};
   const bool nothing = !needs.description && !needs.joints && !needs.guess;
   if (nothing || !(arguments.listen_s > 0)) return nullptr;
   auto progress = std::make_shared<Progress>("listens");
@@ -89,22 +89,25 @@ AnyRobot robot_of(ReferenceArguments& arguments, ReferenceListener* listener) {
   return load_robot(arguments.robot);
 }
 
-Pose start_of(ReferenceArguments& arguments, const AnyRobot& robot, ReferenceListener* listener) {
-  HeardPlace heard;
+Pose initial_pose_of(ReferenceArguments& arguments, const AnyRobot& robot,
+                     ReferenceListener* listener) {
+  ReceivedInputs received;
   if (listener != nullptr) {
-    heard = listener->place(std::visit([](const auto& any) { return any.inputs; }, robot));
+    received =
+        listener->wait_for_inputs(std::visit([](const auto& any) { return any.inputs; }, robot));
   }
   if (arguments.scene.joints.empty()) {
-    arguments.scene.positions = heard.positions;
+    arguments.scene.positions = received.positions;
     arguments.scene.positions_from = k_joint_states_topic;
-    std::printf("joints     %zu of %s\n", heard.positions.size(), k_joint_states_topic);
+    std::printf("joints     %zu of %s\n", received.positions.size(), k_joint_states_topic);
   }
-  if (!arguments.seed.empty()) return checked(pose_of_seed(arguments.seed), "--seed");
-  const Vector3& t = heard.guess.pose.translation;
+  if (!arguments.initial_guess.empty())
+    return checked(pose_from_xyz_rpy(arguments.initial_guess), "--seed");
+  const Vector3& t = received.guess.pose.translation;
   std::printf("guess      [%.3f, %.3f, %.3f] m of %s, in frame \"%s\"\n", t.x(), t.y(), t.z(),
-              k_initial_pose_topic, printable(heard.guess.frame.data()).c_str());
-  check_frame(heard.guess, arguments.scene.camera);
-  return checked(heard.guess.pose, k_initial_pose_topic);
+              k_initial_pose_topic, printable(received.guess.frame.data()).c_str());
+  check_frame(received.guess, arguments.scene.camera);
+  return checked(received.guess.pose, k_initial_pose_topic);
 }
 
 }  // namespace glint

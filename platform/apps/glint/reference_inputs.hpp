@@ -15,19 +15,19 @@ namespace glint {
 struct ReferenceArguments {
   RobotFiles robot;
   SceneFiles scene;
-  std::vector<double> seed;
-  std::string json, model, exported;
+  std::vector<double> initial_guess;
+  std::string json, model, export_file;
   int points = k_robot_cloud_points;
   bool visual = false;
   std::vector<double> range;  // --search-range
-  double depth_bias_mm = 1e3 * SharedErrors{}.depth_sigma_m;
+  double depth_bias_mm = 1e3 * SystematicErrors{}.depth_sigma_m;
   double listen_s = 0;
   DdsSettings network;
 
   [[nodiscard]] bool has_robot() const { return !robot.urdf.empty() || !model.empty(); }
   [[nodiscard]] bool only_exports() const {
-    return !exported.empty() && scene.depth.empty() && scene.joints.empty() &&
-           scene.camera.empty() && seed.empty();
+    return !export_file.empty() && scene.depth.empty() && scene.joints.empty() &&
+           scene.camera.empty() && initial_guess.empty();
   }
 };
 
@@ -37,7 +37,7 @@ struct ReferenceArguments {
 using AnyRobot = std::variant<RobotModel, RobotCloud>;
 
 // Throws InputError for a missing option.
-void check_given(const ReferenceArguments& arguments);
+void require_inputs(const ReferenceArguments& arguments);
 
 // Returns a listener for the inputs that no file provides; null if none is missing or without
 // --listen.
@@ -47,7 +47,7 @@ void check_given(const ReferenceArguments& arguments);
 
 // Returns the initial pose of the robot and stores received joint positions in the scene. Prints
 // what was received.
-[[nodiscard]] Pose start_of(ReferenceArguments& arguments, const AnyRobot& robot,
-                            ReferenceListener* listener);
+[[nodiscard]] Pose initial_pose_of(ReferenceArguments& arguments, const AnyRobot& robot,
+                                   ReferenceListener* listener);
 
 }  // namespace glint

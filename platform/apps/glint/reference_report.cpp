@@ -44,27 +44,28 @@ void print_pose(const char* what, const Candidate& c) {
 
 }  // namespace
 
-void print_reference(const Reference& reference, const ReferenceFacts& facts) {
+void print_reference(const Reference& reference, const ReferenceContext& facts) {
   print_pose("base", reference.found);
   const Matrix6& covariance = reference.found.alignment.covariance;
   std::printf("sigma      %.2f mm, %.3f deg an axis\n",
               1e3 * std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3),
               k_degrees_per_radian * std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3));
   std::printf("searched   %.2f m and %.0f deg about the rough pose, %d alignments\n",
-              facts.range.shift_m, k_degrees_per_radian * facts.range.turn_rad, reference.starts);
-  for (const Candidate& rival : reference.rivals) print_pose("rival", rival);
+              facts.range.translation_m, k_degrees_per_radian * facts.range.rotation_rad,
+              reference.starts);
+  for (const Candidate& rival : reference.alternatives) print_pose("rival", rival);
   if (facts.triangles_skipped > 0) {
     std::printf("meshes     %d triangles without an area skipped\n", facts.triangles_skipped);
   }
   std::printf("verdict    %s%s%s\n", name_of(reference.verdict).c_str(),
-              reference.why.empty() ? "" : ": ", printable(reference.why).c_str());
+              reference.reason.empty() ? "" : ": ", printable(reference.reason).c_str());
 }
 
-nlohmann::ordered_json reference_json(const Reference& reference, const ReferenceFacts& facts) {
+nlohmann::ordered_json reference_json(const Reference& reference, const ReferenceContext& facts) {
   const ModelAlignment& alignment = reference.found.alignment;
   Json json = candidate_json(reference.found);
   json["verdict"] = name_of(reference.verdict);
-  json["why"] = reference.why;
+  json["why"] = reference.reason;
   json["residual_mm"] = 1e3 * alignment.residual_m;
   Json covariance = Json::array();
   for (int r = 0; r < 6; ++r) {
@@ -74,12 +75,13 @@ nlohmann::ordered_json reference_json(const Reference& reference, const Referenc
   json["pairs"] = alignment.pairs;
   json["frames"] = facts.frames;
   json["starts"] = reference.starts;
-  json["search_range"] = {{"shift_m", facts.range.shift_m},
-                          {"turn_deg", k_degrees_per_radian * facts.range.turn_rad}};
+  json["search_range"] = {{"shift_m", facts.range.translation_m},
+                          {"turn_deg", k_degrees_per_radian * facts.range.rotation_rad}};
   json["robot"] = facts.robot;
   json["triangles_skipped"] = facts.triangles_skipped;
   json["rivals"] = Json::array();
-  for (const Candidate& rival : reference.rivals) json["rivals"].push_back(candidate_json(rival));
+  for (const Candidate& rival : reference.alternatives)
+    json["rivals"].push_back(candidate_json(rival));
   return json;
 }
 

@@ -8,16 +8,16 @@
 
 namespace glint {
 
-struct ReferenceFacts {
+struct ReferenceContext {
   std::string robot;
   int triangles_skipped = 0;
   std::size_t frames = 0;
   SearchRange range;
 };
 
-void print_reference(const Reference& reference, const ReferenceFacts& facts);
+void print_reference(const Reference& reference, const ReferenceContext& facts);
 
 [[nodiscard]] nlohmann::ordered_json reference_json(const Reference& reference,
-                                                    const ReferenceFacts& facts);
+                                                    const ReferenceContext& facts);
 
 }  // namespace glint

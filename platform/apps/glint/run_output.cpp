@@ -95,7 +95,7 @@ ordered_json by_rate(const OutputByRate& rates, std::size_t tool, Duration perio
   const double limits_ms[k_frame_rates + 1] = {0, 1.5 * period_ms, 4.5 * period_ms, INFINITY};
   ordered_json list = ordered_json::array();
   for (std::size_t r = 0; r < k_frame_rates; ++r) {
-    const RateFigures& figures = rates.tools[tool][r];
+    const RateStatistics& figures = rates.tools[tool][r];
     if (figures.ticks == 0) continue;
     const double seconds = rates.seconds[r];
     list.push_back(

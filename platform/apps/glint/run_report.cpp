@@ -45,11 +45,11 @@ ordered_json of_poses(const Accuracy& accuracy, double figure) {
 }
 
 bool best_effort(const SessionResult& result) {
-  return !result.refused.empty() || !result.machine.spoils.empty();
+  return !result.refused.empty() || !result.machine.timing_faults.empty();
 }
 
 // Number of frames whose latency to the bus exceeded its bound.
-std::int64_t above_bound(const RunPlan& plan, const SessionResult& result) {
+std::int64_t above_bound(const RunSchedule& plan, const SessionResult& result) {
   if (plan.frame_to_can_bound_us <= 0) return 0;
   return std::count_if(
       result.latencies.begin(), result.latencies.end(), [&](const FrameToCan& entry) {
@@ -57,7 +57,7 @@ std::int64_t above_bound(const RunPlan& plan, const SessionResult& result) {
       });
 }
 
-ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
+ordered_json budget_of(const RunSchedule& plan, const SessionResult& result) {
   const OverrunCounts &frame = result.frame_overruns, &tick = result.tick_overruns;
   ordered_json by_policy;
   for (std::size_t p = 0; p < frame.by_policy.size(); ++p) {
@@ -75,7 +75,7 @@ ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
   return {{"board", plan.board},
           {"plan", plan.plan_file},
           {"bound_us", bound.is_null() ? ordered_json::object() : bound},
-          {"doubts", plan.doubts},
+          {"doubts", plan.caveats},
           {"frames_above_bound", above_bound(plan, result)},
           {"overruns",
            {{"frame", frame.total()},
@@ -87,7 +87,7 @@ ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
           {"trace_spans", result.trace_spans},
           {"trace_dropped", result.trace_dropped},
           {"preempt_rt", result.machine.preempt_rt},
-          {"best_effort", result.machine.spoils}};
+          {"best_effort", result.machine.timing_faults}};
 }
 
 void latency_row(const char* name, const ordered_json& item) {
@@ -101,8 +101,8 @@ void latency_row(const char* name, const ordered_json& item) {
 
 ordered_json tool_orders(const Cell& cell, const SessionResult& result) {
   ordered_json list = ordered_json::array();
-  for (std::size_t t = 0; t < result.tool_orders.size(); ++t) {
-    const auto [added, removed] = result.tool_orders[t];
+  for (std::size_t t = 0; t < result.tool_change_counts.size(); ++t) {
+    const auto [added, removed] = result.tool_change_counts[t];
     const std::string tool = cell.tools.items[t].name.data();
     if (added + removed > 0)
       list.push_back({{"tool", tool}, {"added", added}, {"removed", removed}});
@@ -126,7 +126,7 @@ std::string released_text(std::uint64_t released) {
 ordered_json noise_json(const Cell& cell, const SessionResult& result) {
   const MarkerNoise declared{cell.camera.range_sigma_m, cell.camera.pixel_sigma_px};
   const MarkerNoise noise = noise_now(result.noise, declared);
-  return {{"estimated", result.noise.known},
+  return {{"estimated", result.noise.has_residuals},
           {"range_sigma_mm", 1e3 * noise.range_sigma_m},
           {"pixel_sigma_px", noise.pixel_sigma_px}};
 }
@@ -141,15 +141,15 @@ ordered_json calibration_json(const SessionResult& result) {
                     {"estimate", unit.per_base * finding.estimate},
                     {"sigma", unit.per_base * finding.sigma},
                     {"range_mm", 1e3 * finding.range_m},
-                    {"stated_sigmas", finding.stated_sigmas},
-                    {"named", finding.named}});
+                    {"stated_sigmas", finding.size_in_stated_sigmas},
+                    {"named", finding.exceeds_stated}});
   }
   return list;
 }
 
 }  // namespace
 
-ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResult& result) {
+ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const SessionResult& result) {
   const Accuracy& accuracy = result.accuracy;
   ordered_json frame_to_can = as_json(figures_of_totals(result.latencies));
   frame_to_can["computing"] = as_json(figures_of(result.latencies, &FrameToCan::computing));
@@ -192,24 +192,24 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"can_bus_load", result.can_bus_load},
       {"key_events", result.key_events},
       {"can_heard",
-       {{"buttons", result.can_heard.heard},
-        {"refused", result.can_heard.refused},
-        {"why_not", result.can_not_heard}}},
+       {{"buttons", result.can_received.received},
+        {"refused", result.can_received.refused},
+        {"why_not", result.can_receive_error}}},
       {"dds_offered", result.dds.offered},
       {"dds_written", result.dds.written},
       {"ring_dropped", result.dds.ring_dropped},
-      {"dds_others_lost", result.dds.others_lost},
+      {"dds_others_lost", result.dds.poses_and_transforms_lost},
       {"dds_received", result.dds_reader.received},
       {"dds_missed", result.dds_reader.missed},
       {"dds_poses_written", result.dds.poses_written},
       {"dds_poses_received", result.dds_reader.poses_received},
       {"dds_heard",
-       {{"joint_states", result.heard.joints},
-        {"robot_descriptions", result.heard.descriptions},
-        {"initial_poses", result.heard.guesses},
-        {"buttons", result.heard.buttons},
-        {"tools", result.heard.tools},
-        {"refused", result.heard.refused}}},
+       {{"joint_states", result.dds_received.joints},
+        {"robot_descriptions", result.dds_received.descriptions},
+        {"initial_poses", result.dds_received.guesses},
+        {"buttons", result.dds_received.buttons},
+        {"tools", result.dds_received.tools},
+        {"refused", result.dds_received.refused}}},
       {"recording", result.recording_file},
       {"recording_complete", result.recording.complete()},
       {"recording_ended_early", result.recording.ended_early},
@@ -221,13 +221,13 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"losses", losses_json(result)},
       {"failures", failures_of(result)},
       {"output_sha256", result.output_sha256},
-      {"notices", cell.notices},
+      {"notices", cell.warnings},
       {"corrected", correction_text(cell.correction)},
       {"best_effort", best_effort(result)},
       {"refused", result.refused},
       {"budget", budget_of(plan, result)}};
-  summary["can_heard"]["released"] = result.can_heard.released;
-  summary["dds_heard"]["released"] = result.heard.released;
+  summary["can_heard"]["released"] = result.can_received.released;
+  summary["dds_heard"]["released"] = result.dds_received.released;
   summary["dds_tool_changes"] = tool_orders(cell, result);
   if (result.background) summary["background"] = as_json(*result.background);
   return summary;
@@ -285,17 +285,16 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                    std::to_string(background->map.planes) + " planes, of " +
                    std::to_string(background->map.voxels) + " voxels in " +
                    std::to_string(background->map.pictures) + " pictures (" +
-                   std::to_string(background->pictures_missed) + " missed)");
+                   std::to_string(background->images_missed) + " missed)");
     const RobotProgress& robot = background->robot;
     if (robot.last != FollowOutcome::no_reference) {
       row("robot", "followed in " + std::to_string(robot.followed) + " pictures, " +
                        std::to_string(robot.jumps) + " jumps refused, " +
-                       std::to_string(robot.unsure) + " told too little");
-      if (background->joints_used + background->joints_passed_over > 0) {
+                       std::to_string(robot.inconclusive) + " told too little");
+      if (background->joints_used + background->joints_skipped > 0) {
         row("robot's joints", "heard: by " + std::to_string(background->joints_used) + " states, " +
-                                  std::to_string(background->joints_passed_over) +
-                                  " passed over; " +
-                                  std::to_string(background->pictures_without_joints) +
+                                  std::to_string(background->joints_skipped) + " passed over; " +
+                                  std::to_string(background->images_without_joints) +
                                   " pictures too long after them");
       }
     }
@@ -308,27 +307,27 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                         std::to_string(result.can.failed) + " refused, " +
                         std::to_string(result.can.dropped) + " dropped (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
-  if (const ButtonFrameCounts& heard = result.can_heard; heard.any()) {
-    row("heard over CAN", std::to_string(heard.heard) + " frames of buttons; " +
-                              std::to_string(heard.refused) + " refused" +
-                              released_text(heard.released));
+  if (const ButtonFrameCounts& received = result.can_received; received.any()) {
+    row("heard over CAN", std::to_string(received.received) + " frames of buttons; " +
+                              std::to_string(received.refused) + " refused" +
+                              released_text(received.released));
   }
-  if (!result.can_not_heard.empty()) row("not heard over CAN", result.can_not_heard);
+  if (!result.can_receive_error.empty()) row("not heard over CAN", result.can_receive_error);
   if (result.key_events > 0) row("buttons by key", std::to_string(result.key_events) + " changes");
   const auto of_reader = [&](std::uint64_t count) {
-    return result.dds_not_read.empty() ? std::to_string(count) : "-";
+    return result.dds_reader_error.empty() ? std::to_string(count) : "-";
   };
   row("DDS", std::to_string(result.dds.written) + " written, " +
                  of_reader(result.dds_reader.received) + " received, " +
                  of_reader(result.dds_reader.missed) + " missed, " +
                  std::to_string(result.dds.ring_dropped) + " dropped");
-  if (const HeardCounts& heard = result.heard; heard.any()) {
+  if (const ReceivedCounts& received = result.dds_received; received.any()) {
     row("heard over DDS",
-        std::to_string(heard.joints) + " joint states, " + std::to_string(heard.descriptions) +
-            " descriptions, " + std::to_string(heard.guesses) + " guesses, " +
-            std::to_string(heard.buttons) + " buttons, " + std::to_string(heard.tools) +
-            " tools; " + std::to_string(heard.refused) + " refused" +
-            released_text(heard.released));
+        std::to_string(received.joints) + " joint states, " +
+            std::to_string(received.descriptions) + " descriptions, " +
+            std::to_string(received.guesses) + " guesses, " + std::to_string(received.buttons) +
+            " buttons, " + std::to_string(received.tools) + " tools; " +
+            std::to_string(received.refused) + " refused" + released_text(received.released));
   }
   tool_order_rows(summary.at("dds_tool_changes"));
   row("output_sha256", result.output_sha256);
@@ -337,10 +336,10 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   if (const auto text = summary.at("corrected").get<std::string>(); !text.empty())
     row("corrected by", text);
   for (const CalibrationFinding& finding : result.calibration) {
-    if (finding.named) row("CALIBRATION", text_of(finding));
+    if (finding.exceeds_stated) row("CALIBRATION", text_of(finding));
   }
   for (const std::string& refused : result.refused) row("refused", refused);
-  for (const std::string& line : result.machine.spoils) row("this machine", line);
+  for (const std::string& line : result.machine.timing_faults) row("this machine", line);
 }
 
 void print_files(const SessionResult& result, std::size_t first) {

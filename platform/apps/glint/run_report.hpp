@@ -10,7 +10,7 @@
 
 namespace glint {
 
-[[nodiscard]] nlohmann::ordered_json summary_of(const Cell& cell, const RunPlan& plan,
+[[nodiscard]] nlohmann::ordered_json summary_of(const Cell& cell, const RunSchedule& plan,
                                                 const SessionResult& result);
 
 void print_table(const nlohmann::ordered_json& summary, const SessionResult& result);

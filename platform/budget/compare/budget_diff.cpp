@@ -37,8 +37,9 @@ void judge_times(const Series& before, const Series& after, const DiffSettings& 
   const bool differs = row.p < 1 - diff.row_confidence;
   row.change = differs && row.low > 1    ? Change::slower
                : differs && row.high < 1 ? Change::faster
-                                         : Change::not_shown;
-  row.worse_beyond = row.change == Change::slower && row.low > 1 + settings.tolerance_percent / 100;
+                                         : Change::not_significant;
+  row.significantly_slower =
+      row.change == Change::slower && row.low > 1 + settings.tolerance_percent / 100;
   diff.rows.push_back(row);
 }
 
@@ -47,7 +48,7 @@ void judge_counts(const std::string& name, const char* what, double before, doub
   const double ratio = before > 0 ? after / before : after > 0 ? 1e9 : 1;
   DiffRow row{name, what, before, after, ratio, ratio, before == after ? 1.0 : 0.0};
   row.change = after > before ? Change::slower : after < before ? Change::faster : Change::same;
-  row.worse_beyond = ratio > 1 + settings.tolerance_percent / 100;
+  row.significantly_slower = ratio > 1 + settings.tolerance_percent / 100;
   diff.rows.push_back(row);
 }
 
@@ -121,7 +122,7 @@ BudgetDiff diff_measurements(const std::string& before, const std::string& after
         judge_counts(x.name, "bound", x.view.number("bound"), y.view.number("bound"), settings,
                      diff);
         // A bound of times is an envelope of noise: it is shown; the times below are judged.
-        if (!diff.exact) diff.rows.back().worse_beyond = false;
+        if (!diff.exact) diff.rows.back().significantly_slower = false;
         if (diff.exact) {
           judge_counts(x.name, "largest", x.view.number("observed_max"),
                        y.view.number("observed_max"), settings, diff);
@@ -162,7 +163,8 @@ BudgetDiff diff_runs(const std::string& before, const std::string& after,
 }  // namespace
 
 bool BudgetDiff::worse() const {
-  return std::any_of(rows.begin(), rows.end(), [](const DiffRow& row) { return row.worse_beyond; });
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const DiffRow& row) { return row.significantly_slower; });
 }
 
 BudgetDiff budget_diff(const std::string& before, const std::string& after,
@@ -191,7 +193,7 @@ nlohmann::ordered_json as_json(const BudgetDiff& diff) {
                     {"ratio_high", row.high},
                     {"p", row.p},
                     {"change", name_of(row.change)},
-                    {"worse_beyond_tolerance", row.worse_beyond}});
+                    {"worse_beyond_tolerance", row.significantly_slower}});
   }
   return {{"unit", diff.unit},
           {"exact", diff.exact},

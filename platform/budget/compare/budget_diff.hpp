@@ -7,7 +7,7 @@
 
 namespace glint {
 
-enum class Change { same, faster, slower, not_shown };
+enum class Change { same, faster, slower, not_significant };
 
 struct DiffRow {
   std::string name;  // kernel, or group and node
@@ -16,7 +16,7 @@ struct DiffRow {
   double low = 1, high = 1;  // interval of after / before; exact counts: the ratio
   double p = 1;              // of no difference; exact counts: 0 or 1
   Change change = Change::same;
-  bool worse_beyond = false;  // slower than the tolerance, significantly
+  bool significantly_slower = false;  // slower than the tolerance, significantly
 };
 
 struct DiffSettings {

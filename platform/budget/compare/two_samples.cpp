@@ -55,8 +55,8 @@ double mann_whitney(std::span<const double> a, std::span<const double> b) {
 }
 
 RatioInterval median_ratio(std::span<const double> a, std::span<const double> b, double confidence,
-                           int resamples, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+                           int resamples, std::uint64_t random_seed) {
+  std::mt19937_64 random(random_seed);
   std::vector<double> of_a(a.begin(), a.end()), of_b(b.begin(), b.end()), ratios;
   RatioInterval interval;
   interval.ratio = median_of(of_b) / median_of(of_a);

@@ -21,6 +21,7 @@ struct RatioInterval {
 // values. Source: Kuensch 1989, The jackknife and the bootstrap for general stationary
 // observations, section 2.3 (moving blocks).
 [[nodiscard]] RatioInterval median_ratio(std::span<const double> a, std::span<const double> b,
-                                         double confidence, int resamples, std::uint64_t seed);
+                                         double confidence, int resamples,
+                                         std::uint64_t random_seed);
 
 }  // namespace glint

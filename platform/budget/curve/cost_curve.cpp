@@ -23,7 +23,7 @@ double frame_bound(const Board& board, int tools) {
 
 std::string plot(const std::vector<CurveRow>& rows, const std::string& title,
                  const std::string& x_label, const std::string& unit,
-                 int (*x_of)(const CrowdPoint&), bool (*shown)(const CrowdPoint&)) {
+                 int (*x_of)(const DenseScenePoint&), bool (*shown)(const DenseScenePoint&)) {
   std::vector<LineSeries> series{{"bound", {}}, {"observed max", {}}, {"observed median", {}}};
   std::map<int, const CurveRow*> in_order;
   for (const CurveRow& row : rows) {
@@ -32,7 +32,7 @@ std::string plot(const std::vector<CurveRow>& rows, const std::string& title,
   for (const auto& [x, row] : in_order) {
     const double at = x;
     series[0].points.emplace_back(at, row->bound / 1000);
-    series[1].points.emplace_back(at, row->greatest / 1000);
+    series[1].points.emplace_back(at, row->maximum / 1000);
     series[2].points.emplace_back(at, row->median / 1000);
   }
   return line_plot({title, x_label, "thousand " + unit + " a frame"}, series);
@@ -42,7 +42,7 @@ std::string plot(const std::vector<CurveRow>& rows, const std::string& title,
 
 std::vector<CurveRow> cost_curve(const Observations& seen, const Board& board) {
   std::vector<CurveRow> rows;
-  for (const CrowdPoint& point : crowd_points()) {
+  for (const DenseScenePoint& point : crowd_points()) {
     for (const KernelObservations& kernel : seen.kernels) {
       if (kernel.name != point.name()) continue;
       std::vector<double> costs;
@@ -51,7 +51,7 @@ std::vector<CurveRow> cost_curve(const Observations& seen, const Board& board) {
       row.point = point;
       row.frames = costs.size();
       row.median = percentile(costs, 0.5);
-      row.greatest = percentile(costs, 1.0);
+      row.maximum = percentile(costs, 1.0);
       row.bound = frame_bound(board, point.tools);
       rows.push_back(row);
     }
@@ -62,15 +62,15 @@ std::vector<CurveRow> cost_curve(const Observations& seen, const Board& board) {
 std::string strays_plot(const std::vector<CurveRow>& rows, const std::string& unit) {
   return plot(
       rows, "Five tools among strays: a frame's cost", "stray reflections", unit,
-      [](const CrowdPoint& point) { return point.strays; },
-      [](const CrowdPoint& point) { return point.tools == k_usual_tools; });
+      [](const DenseScenePoint& point) { return point.strays; },
+      [](const DenseScenePoint& point) { return point.tools == k_usual_tools; });
 }
 
 std::string tools_plot(const std::vector<CurveRow>& rows, const std::string& unit) {
   return plot(
       rows, "Tools among twenty strays: a frame's cost", "tools", unit,
-      [](const CrowdPoint& point) { return point.tools; },
-      [](const CrowdPoint& point) { return point.strays == k_usual_strays; });
+      [](const DenseScenePoint& point) { return point.tools; },
+      [](const DenseScenePoint& point) { return point.strays == k_usual_strays; });
 }
 
 }  // namespace glint

@@ -12,11 +12,11 @@ namespace glint {
 
 // In the board's unit: instructions or nanoseconds.
 struct CurveRow {
-  CrowdPoint point;
+  DenseScenePoint point;
   std::size_t frames = 0;
-  double median = 0, greatest = 0;
+  double median = 0, maximum = 0;
   double bound = 0;  // of the frame group for this point's cell: all nodes at their maxima
-  [[nodiscard]] bool holds() const { return greatest <= bound; }
+  [[nodiscard]] bool holds() const { return maximum <= bound; }
 };
 
 [[nodiscard]] std::vector<CurveRow> cost_curve(const Observations& seen, const Board& board);

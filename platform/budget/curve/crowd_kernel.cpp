@@ -6,13 +6,13 @@
 namespace glint {
 namespace {
 
-constexpr std::uint64_t k_scene_seed = 1;
+constexpr std::uint64_t k_scene_random_seed = 1;
 
 }  // namespace
 
-void CrowdKernel::prepare() {
+void DenseSceneKernel::prepare() {
   const Cell cell = crowd_cell(point_.tools);
-  const sim::Simulator simulator(sim::crowded_run(cell.tools, point_.strays, k_scene_seed));
+  const sim::Simulator simulator(sim::crowded_run(cell.tools, point_.strays, k_scene_random_seed));
   period_ = cell.camera.period;
   for (std::size_t i = 0; i < k_frames; ++i) {
     frames_[i] = std::make_unique<sim::SimFrame>();
@@ -26,31 +26,32 @@ void CrowdKernel::prepare() {
   tracker_->sample();
   // The first frame finds the tools; from the second on they are searched around their predictions.
   for (int i = 0; i < 2; ++i) {
-    shown_ = frames_[0].get();
+    frame_ = frames_[0].get();
     rewind();
     run();
   }
 }
 
-void CrowdKernel::set_input(InputKind /*kind*/, std::uint64_t number, const Limits& /*limits*/) {
+void DenseSceneKernel::set_input(InputKind /*kind*/, std::uint64_t number,
+                                 const Limits& /*limits*/) {
   if (tracker_ == nullptr) prepare();
-  const std::uint64_t turn = number % (2 * k_frames - 2);
-  const std::uint64_t at = turn < k_frames ? turn : 2 * k_frames - 2 - turn;
-  shown_ = frames_[at].get();
+  const std::uint64_t position = number % (2 * k_frames - 2);
+  const std::uint64_t at = position < k_frames ? position : 2 * k_frames - 2 - position;
+  frame_ = frames_[at].get();
 }
 
-void CrowdKernel::rewind() {
+void DenseSceneKernel::rewind() {
   ++sequence_;
   const Time now = Time{} + period_ * static_cast<std::int64_t>(sequence_);
-  tracker_->input<Frame>() = shown_->pixels.view(now, now, sequence_);
-  tracker_->input<HeadPose>() = shown_->head;
+  tracker_->input<Frame>() = frame_->pixels.view(now, now, sequence_);
+  tracker_->input<HeadPose>() = frame_->head;
   tracker_->input<HeadPose>().time = now;
 }
 
-int CrowdKernel::tools_seen() const {
+int DenseSceneKernel::tools_seen() const {
   int seen = 0;
   const Estimates& estimates = tracker_->output<Estimates>();
-  for (const Track& track : estimates.tracks) seen += track.seen_now ? 1 : 0;
+  for (const Track& track : estimates.tracks) seen += track.measured_now ? 1 : 0;
   return seen;
 }
 

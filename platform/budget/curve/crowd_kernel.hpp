@@ -16,9 +16,9 @@
 
 namespace glint {
 
-class CrowdKernel final : public MeasuredKernel {
+class DenseSceneKernel final : public MeasuredKernel {
  public:
-  explicit CrowdKernel(CrowdPoint point) : point_(point), name_(point.name()) {}
+  explicit DenseSceneKernel(DenseScenePoint point) : point_(point), name_(point.name()) {}
 
   [[nodiscard]] std::string_view name() const override { return name_; }
   [[nodiscard]] std::span<const std::string_view> loops() const override { return k_loops; }
@@ -31,7 +31,7 @@ class CrowdKernel final : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts counts() const override { return {{1}}; }
 
   // Sets frame `number` as the next delivery, for any caller that activates tracker().
-  void show(std::uint64_t number) {
+  void set_frame(std::uint64_t number) {
     set_input(InputKind::typical, number, {});
     rewind();
   }
@@ -45,12 +45,12 @@ class CrowdKernel final : public MeasuredKernel {
 
   void prepare();
 
-  CrowdPoint point_;
+  DenseScenePoint point_;
   std::string name_;
   std::unique_ptr<Tracker> tracker_;
   graph::TripleBuffer<ToolSet> tool_set_;
   std::array<std::unique_ptr<sim::SimFrame>, k_frames> frames_;
-  const sim::SimFrame* shown_ = nullptr;
+  const sim::SimFrame* frame_ = nullptr;
   Duration period_;
   std::uint64_t sequence_ = 0;
 };

@@ -5,8 +5,8 @@ namespace glint {
 
 std::vector<std::unique_ptr<MeasuredKernel>> measured_kernels() {
   std::vector<std::unique_ptr<MeasuredKernel>> kernels;
-  for (const CrowdPoint& point : crowd_points()) {
-    kernels.push_back(std::make_unique<CrowdKernel>(point));
+  for (const DenseScenePoint& point : crowd_points()) {
+    kernels.push_back(std::make_unique<DenseSceneKernel>(point));
   }
   return kernels;
 }

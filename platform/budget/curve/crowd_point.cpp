@@ -5,14 +5,14 @@
 namespace glint {
 namespace {
 
-constexpr std::uint64_t k_crowd_seed = 1;
+constexpr std::uint64_t k_tools_random_seed = 1;
 constexpr int k_usual_tools = 5;
 constexpr int k_usual_strays = 20;
 
 }  // namespace
 
-std::vector<CrowdPoint> crowd_points() {
-  std::vector<CrowdPoint> points;
+std::vector<DenseScenePoint> crowd_points() {
+  std::vector<DenseScenePoint> points;
   for (const int strays : {0, 5, 10, 20, 40, 60, 80, 100, 150, 200}) {
     points.push_back({k_usual_tools, strays});
   }
@@ -26,7 +26,7 @@ std::vector<CrowdPoint> crowd_points() {
 
 Cell crowd_cell(int tools) {
   Cell cell = default_cell();
-  cell.tools = sim::crowd_of_tools(tools, k_crowd_seed);
+  cell.tools = sim::crowd_of_tools(tools, k_tools_random_seed);
   cell.budget.tools = tools;
   if (tools > k_usual_tools) {
     cell.budget.blobs = k_blobs_max;

@@ -8,7 +8,7 @@
 
 namespace glint {
 
-struct CrowdPoint {
+struct DenseScenePoint {
   int tools = 1;
   int strays = 0;
   [[nodiscard]] std::string name() const {
@@ -17,7 +17,7 @@ struct CrowdPoint {
 };
 
 // Points along both axes through the usual cell (5 tools, 20 strays), and the two far corners.
-[[nodiscard]] std::vector<CrowdPoint> crowd_points();
+[[nodiscard]] std::vector<DenseScenePoint> crowd_points();
 
 // The default cell with these tools. With up to five tools it has the default's 64 blobs; with more
 // it has the maximum, since 16 tools alone have 80 markers.

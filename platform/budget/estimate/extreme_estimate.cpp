@@ -20,27 +20,27 @@ std::string p_text(double p) {
 }
 
 // Two tests per assumption, since each test is blind to some violations.
-bool series_may_be_fitted(std::span<const double> series, const ExtremeSettings& settings,
-                          ExtremeEstimate& estimate) {
+bool passes_series_tests(std::span<const double> series, const ExtremeSettings& settings,
+                         ExtremeEstimate& estimate) {
   estimate.values = series.size();
-  const auto least = static_cast<std::size_t>(2 * settings.block * settings.blocks_least);
+  const auto least = static_cast<std::size_t>(2 * settings.block * settings.blocks_min);
   if (series.size() < least) {
-    estimate.why = std::to_string(series.size()) + " values; at least " + std::to_string(least) +
-                   " are needed (two halves of " + std::to_string(settings.blocks_least) +
-                   " blocks of " + std::to_string(settings.block) + ")";
+    estimate.reason = std::to_string(series.size()) + " values; at least " + std::to_string(least) +
+                      " are needed (two halves of " + std::to_string(settings.blocks_min) +
+                      " blocks of " + std::to_string(settings.block) + ")";
     return false;
   }
   const auto add = [&](const char* name, const char* assumption, double p) {
-    estimate.tests.push_back({name, assumption, p, p >= settings.level});
+    estimate.tests.push_back({name, assumption, p, p >= settings.significance});
   };
   add("Ljung-Box", "independent", ljung_box(series, settings.lags));
   add("runs about the median", "independent", runs_test(series));
   add("Mann-Kendall", "stationary", mann_kendall(series));
-  add("Kolmogorov-Smirnov of the halves", "stationary", halves_alike(series));
+  add("Kolmogorov-Smirnov of the halves", "stationary", two_halves_p(series));
   for (const TestResult& test : estimate.tests) {
     if (test.passed) continue;
-    estimate.why = "not " + test.assumption + " (" + test.name + ", p = " + p_text(test.p) +
-                   ", refused below " + p_text(settings.level) + ")";
+    estimate.reason = "not " + test.assumption + " (" + test.name + ", p = " + p_text(test.p) +
+                      ", refused below " + p_text(settings.significance) + ")";
     return false;
   }
   return true;
@@ -48,27 +48,27 @@ bool series_may_be_fitted(std::span<const double> series, const ExtremeSettings&
 
 // Verifies the fit on the other half: its distribution, and the count above the fitted 90 %
 // quantile.
-bool other_half_agrees(const Values& judged, const ExtremeSettings& settings,
-                       ExtremeEstimate& estimate) {
-  const double shape_p = drawn_from_p(judged, estimate.distribution);
+bool verifies_on_other_half(const Values& verification, const ExtremeSettings& settings,
+                            ExtremeEstimate& estimate) {
+  const double shape_p = kolmogorov_smirnov_p(verification, estimate.distribution);
   const double beyond = estimate.distribution.quantile(0.9);
-  const auto n = static_cast<double>(judged.size());
-  const auto above = static_cast<double>(
-      std::count_if(judged.begin(), judged.end(), [&](double x) { return x > beyond; }));
+  const auto n = static_cast<double>(verification.size());
+  const auto above = static_cast<double>(std::count_if(verification.begin(), verification.end(),
+                                                       [&](double x) { return x > beyond; }));
   const double tail_p = two_sided_normal_p((above - 0.1 * n) / std::sqrt(0.09 * n));
   estimate.tests.push_back(
-      {"the other half's distribution", "verified", shape_p, shape_p >= settings.level});
+      {"the other half's distribution", "verified", shape_p, shape_p >= settings.significance});
   estimate.tests.push_back({"the other half beyond the 90 % quantile (" +
                                 std::to_string(static_cast<int>(above)) + " of " +
-                                std::to_string(judged.size()) + ")",
-                            "verified", tail_p, tail_p >= settings.level});
-  estimate.judged_values = judged;
-  std::sort(estimate.judged_values.begin(), estimate.judged_values.end());
+                                std::to_string(verification.size()) + ")",
+                            "verified", tail_p, tail_p >= settings.significance});
+  estimate.verification_values = verification;
+  std::sort(estimate.verification_values.begin(), estimate.verification_values.end());
   for (std::size_t i = estimate.tests.size() - 2; i < estimate.tests.size(); ++i) {
     const TestResult& test = estimate.tests[i];
     if (test.passed) continue;
-    estimate.why = "the fit to one half does not hold on the other (" + test.name +
-                   ", p = " + p_text(test.p) + ")";
+    estimate.reason = "the fit to one half does not hold on the other (" + test.name +
+                      ", p = " + p_text(test.p) + ")";
     return false;
   }
   return true;
@@ -77,8 +77,8 @@ bool other_half_agrees(const Values& judged, const ExtremeSettings& settings,
 bool too_few_distinct(const Values& values, ExtremeEstimate& estimate) {
   const std::set<double> distinct(values.begin(), values.end());
   if (2 * distinct.size() >= values.size()) return false;
-  estimate.why = "only " + std::to_string(distinct.size()) + " different values among " +
-                 std::to_string(values.size()) + " extremes: no continuous distribution";
+  estimate.reason = "only " + std::to_string(distinct.size()) + " different values among " +
+                    std::to_string(values.size()) + " extremes: no continuous distribution";
   return true;
 }
 
@@ -103,17 +103,17 @@ void add_interval(const ExtremeSettings& settings, ExtremeEstimate& estimate, Fi
   estimate.low = std::min(at((1 - settings.interval) / 2), estimate.level);
   estimate.high = std::max(at((1 + settings.interval) / 2), estimate.level);
   char text[120];
-  if (estimate.distribution.shape >= settings.shape_most) {
+  if (estimate.distribution.shape >= settings.shape_max) {
     std::snprintf(text, sizeof text, "the tail is too heavy for the fit (shape %.2f, at most %.2f)",
-                  estimate.distribution.shape, settings.shape_most);
-    estimate.why = text;
-  } else if (!(estimate.high <= settings.widest * estimate.low)) {
+                  estimate.distribution.shape, settings.shape_max);
+    estimate.reason = text;
+  } else if (!(estimate.high <= settings.interval_ratio_max * estimate.low)) {
     std::snprintf(text, sizeof text,
                   "the values seen leave the level open: its interval is %.4g to %.4g",
                   estimate.low, estimate.high);
-    estimate.why = text;
+    estimate.reason = text;
   }
-  estimate.applicable = estimate.why.empty();
+  estimate.applicable = estimate.reason.empty();
 }
 
 Values block_maxima(std::span<const double> series, int block) {
@@ -133,15 +133,15 @@ ExtremeEstimate estimate_by_maxima(std::span<const double> series,
   ExtremeEstimate estimate;
   estimate.method = "maxima of blocks of " + std::to_string(settings.block) +
                     ", generalized extreme values by probability-weighted moments";
-  if (!series_may_be_fitted(series, settings, estimate)) return estimate;
+  if (!passes_series_tests(series, settings, estimate)) return estimate;
   const std::size_t half = series.size() / 2;
   const Values fitted = block_maxima(series.first(half), settings.block);
-  const Values judged = block_maxima(series.subspan(half), settings.block);
+  const Values verification = block_maxima(series.subspan(half), settings.block);
   estimate.fitted = fitted.size();
-  estimate.judged = judged.size();
+  estimate.verified = verification.size();
   if (too_few_distinct(fitted, estimate)) return estimate;
   estimate.distribution = fit_maxima(fitted);
-  if (!other_half_agrees(judged, settings, estimate)) return estimate;
+  if (!verifies_on_other_half(verification, settings, estimate)) return estimate;
   // A block is below the level if all its values are.
   const auto level = [&](const ExtremeDistribution& d) {
     return d.quantile(std::pow(1 - settings.exceedance, settings.block));
@@ -158,7 +158,7 @@ ExtremeEstimate estimate_by_exceedances(std::span<const double> series,
   std::snprintf(part, sizeof part, "%g", 100 * settings.threshold);
   estimate.method = "values above the " + std::string(part) +
                     " % quantile, generalized Pareto by probability-weighted moments";
-  if (!series_may_be_fitted(series, settings, estimate)) return estimate;
+  if (!passes_series_tests(series, settings, estimate)) return estimate;
   const auto first = series.first(series.size() / 2);
   Values sorted(first.begin(), first.end());
   std::sort(sorted.begin(), sorted.end());
@@ -170,12 +170,12 @@ ExtremeEstimate estimate_by_exceedances(std::span<const double> series,
                  [&](double x) { return x > threshold; });
     return kept;
   };
-  const Values fitted = above(first), judged = above(series.subspan(series.size() / 2));
+  const Values fitted = above(first), verification = above(series.subspan(series.size() / 2));
   estimate.fitted = fitted.size();
-  estimate.judged = judged.size();
+  estimate.verified = verification.size();
   if (too_few_distinct(fitted, estimate)) return estimate;
   estimate.distribution = fit_exceedances(fitted, threshold);
-  if (!other_half_agrees(judged, settings, estimate)) return estimate;
+  if (!verifies_on_other_half(verification, settings, estimate)) return estimate;
   // Coles 2001, eq. (4.12): probability of exceeding the threshold, times that of exceeding the
   // level.
   const double beyond = static_cast<double>(fitted.size()) / static_cast<double>(first.size());

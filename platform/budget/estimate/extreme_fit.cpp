@@ -11,7 +11,7 @@ namespace glint {
 namespace {
 
 constexpr double k_euler = 0.57721566490153286;
-constexpr double k_no_shape = 1e-6;  // closer to zero the limit forms are more accurate
+constexpr double k_shape_epsilon = 1e-6;  // closer to zero the limit forms are more accurate
 
 // b_0, b_1, b_2: unbiased estimates of E[x F(x)^r].
 std::array<double, 3> weighted_moments(std::span<const double> values) {
@@ -32,7 +32,7 @@ std::array<double, 3> weighted_moments(std::span<const double> values) {
 
 double ExtremeDistribution::cumulative(double x) const {
   const double z = (x - location) / scale;
-  const bool straight = std::abs(shape) < k_no_shape;
+  const bool straight = std::abs(shape) < k_shape_epsilon;
   const double inside = 1 + shape * z;
   if (family == Family::exceedances && z <= 0) return 0;
   if (!straight && inside <= 0) return shape > 0 ? 0 : 1;
@@ -42,7 +42,7 @@ double ExtremeDistribution::cumulative(double x) const {
 
 double ExtremeDistribution::quantile(double p) const {
   const double y = family == Family::maxima ? -std::log(p) : 1 - p;
-  if (std::abs(shape) < k_no_shape) return location - scale * std::log(y);
+  if (std::abs(shape) < k_shape_epsilon) return location - scale * std::log(y);
   return location + scale / shape * (std::pow(y, -shape) - 1);
 }
 
@@ -50,7 +50,7 @@ ExtremeDistribution fit_maxima(std::span<const double> maxima) {
   const auto [b0, b1, b2] = weighted_moments(maxima);
   const double c = (2 * b1 - b0) / (3 * b2 - b0) - std::log(2.0) / std::log(3.0);
   const double k = 7.8590 * c + 2.9554 * c * c;
-  if (std::abs(k) < k_no_shape) return fit_gumbel(maxima);
+  if (std::abs(k) < k_shape_epsilon) return fit_gumbel(maxima);
   const double gamma = std::tgamma(1 + k);
   const double scale = (2 * b1 - b0) * k / (gamma * (1 - std::pow(2.0, -k)));
   return {ExtremeDistribution::Family::maxima, b0 + scale * (gamma - 1) / k, scale, -k};
@@ -75,7 +75,8 @@ ExtremeDistribution fit_exceedances(std::span<const double> values, double thres
   return {ExtremeDistribution::Family::exceedances, threshold, scale, -k};
 }
 
-double drawn_from_p(std::span<const double> values, const ExtremeDistribution& distribution) {
+double kolmogorov_smirnov_p(std::span<const double> values,
+                            const ExtremeDistribution& distribution) {
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   const auto n = static_cast<double>(sorted.size());

@@ -38,7 +38,7 @@ struct ExtremeDistribution {
 
 // Kolmogorov-Smirnov test that the values are draws from the distribution (fitted to others);
 // p-value.
-[[nodiscard]] double drawn_from_p(std::span<const double> values,
-                                  const ExtremeDistribution& distribution);
+[[nodiscard]] double kolmogorov_smirnov_p(std::span<const double> values,
+                                          const ExtremeDistribution& distribution);
 
 }  // namespace glint

@@ -20,21 +20,21 @@ double chi_squared_p(double value, int degrees) {
 }
 
 // Number of inversions (strictly decreasing pairs), by merge sort; sorts the range.
-std::int64_t inversions(std::span<double> values, std::span<double> room) {
+std::int64_t inversions(std::span<double> values, std::span<double> scratch) {
   if (values.size() < 2) return 0;
   const std::size_t middle = values.size() / 2;
-  std::int64_t count = inversions(values.first(middle), room.first(middle)) +
-                       inversions(values.subspan(middle), room.subspan(middle));
+  std::int64_t count = inversions(values.first(middle), scratch.first(middle)) +
+                       inversions(values.subspan(middle), scratch.subspan(middle));
   std::size_t left = 0, right = middle, out = 0;
   while (left < middle || right < values.size()) {
     if (right == values.size() || (left < middle && values[left] <= values[right])) {
-      room[out++] = values[left++];
+      scratch[out++] = values[left++];
     } else {
       count += static_cast<std::int64_t>(middle - left);
-      room[out++] = values[right++];
+      scratch[out++] = values[right++];
     }
   }
-  std::copy(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(out), values.begin());
+  std::copy(scratch.begin(), scratch.begin() + static_cast<std::ptrdiff_t>(out), values.begin());
   return count;
 }
 
@@ -104,16 +104,16 @@ double mann_kendall(std::span<const double> series) {
     tied_pairs += t * (t - 1) / 2;
     tied_variance += t * (t - 1) * (2 * t + 5);
   }
-  std::vector<double> values(series.begin(), series.end()), room(series.size());
-  const auto falling = static_cast<double>(inversions(values, room));
+  std::vector<double> values(series.begin(), series.end()), scratch(series.size());
+  const auto falling = static_cast<double>(inversions(values, scratch));
   const double s = n * (n - 1) / 2 - tied_pairs - 2 * falling;
   const double variance = (n * (n - 1) * (2 * n + 5) - tied_variance) / 18;
   if (variance <= 0) return 0;
-  const double nearer = s > 0 ? s - 1 : s < 0 ? s + 1 : 0;  // continuity correction
-  return two_sided_normal_p(nearer / std::sqrt(variance));
+  const double corrected = s > 0 ? s - 1 : s < 0 ? s + 1 : 0;  // continuity correction
+  return two_sided_normal_p(corrected / std::sqrt(variance));
 }
 
-double halves_alike(std::span<const double> series) {
+double two_halves_p(std::span<const double> series) {
   const std::size_t half = series.size() / 2;
   std::vector<double> a(series.begin(), series.begin() + static_cast<std::ptrdiff_t>(half));
   std::vector<double> b(series.begin() + static_cast<std::ptrdiff_t>(half), series.end());

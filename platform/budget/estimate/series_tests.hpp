@@ -22,7 +22,7 @@ namespace glint {
 [[nodiscard]] double mann_kendall(std::span<const double> series);
 
 // Equal distributions of both halves of the series: two-sample Kolmogorov-Smirnov.
-[[nodiscard]] double halves_alike(std::span<const double> series);
+[[nodiscard]] double two_halves_p(std::span<const double> series);
 
 // Tail of the Kolmogorov distribution at distance d of n values (two samples: n m / (n + m)).
 // Source: Stephens 1970, Use of the Kolmogorov-Smirnov, Cramer-von Mises and related statistics

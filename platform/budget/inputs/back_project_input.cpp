@@ -25,7 +25,7 @@ CameraModel wide_lens(const Vector2& pixel, int steps) {
   for (int i = 0; i < 3000; ++i) {
     camera.cx = pixel.x() - i;
     int taken = 0;
-    if (unproject_turning(camera, pixel, steps, taken) && taken == steps) break;
+    if (unproject_with_jacobian(camera, pixel, steps, taken) && taken == steps) break;
   }
   return camera;
 }
@@ -58,7 +58,7 @@ class MeasuredBackProject final : public MeasuredKernel {
         find_blobs_in_frame();
         break;
       case InputKind::worst:
-        blind(worst_blind(number, limits));
+        draw_saturated(worst_saturated(number, limits));
         break;
       case InputKind::searched:
         search(random, limits);
@@ -71,11 +71,11 @@ class MeasuredBackProject final : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts counts() const override { return node_->counts(); }
 
  private:
-  // Identical blobs whose centres are saturated out to blind_px.
-  struct Blind {
+  // Identical blobs whose centres are saturated out to saturated_px.
+  struct SaturatedBlobs {
     int blobs = 1;
     std::uint32_t area_px = k_blind_area_px;
-    double blind_px = 3.7;
+    double saturated_px = 3.7;
     int lens_steps = k_ray_steps_max;
     DepthKind kind = DepthKind::z;
     double nominal_radius_m = 0.05;
@@ -83,38 +83,38 @@ class MeasuredBackProject final : public MeasuredKernel {
   };
 
   // Variant 0 drives every loop to its maximum.
-  static Blind worst_blind(std::uint64_t variant, const Limits& limits) {
-    Blind blind;
-    blind.blobs = limits.blobs;
-    blind.lens_steps = limits.ray_steps;
+  static SaturatedBlobs worst_saturated(std::uint64_t variant, const Limits& limits) {
+    SaturatedBlobs saturated;
+    saturated.blobs = limits.blobs;
+    saturated.lens_steps = limits.ray_steps;
     switch (variant % 6) {
       case 1:
-        blind.blind_px = 0;
+        saturated.saturated_px = 0;
         break;
       case 2:
-        blind.area_px = 1200;
+        saturated.area_px = 1200;
         break;
       case 3:
-        blind.kind = DepthKind::radial;
+        saturated.kind = DepthKind::radial;
         break;
       case 4:
-        blind.blobs = std::max(limits.blobs * limits.range_samples_a_blob / 64, 1);
+        saturated.blobs = std::max(limits.blobs * limits.range_samples_per_blob / 64, 1);
         break;
       case 5:
-        blind.off_px = 0.5;
+        saturated.off_px = 0.5;
         break;
       default:
         break;
     }
-    return blind;
+    return saturated;
   }
 
-  void blind(const Blind& input) {
+  void draw_saturated(const SaturatedBlobs& input) {
     drawn_.clear(node_->limits);
     const Vector2 middle{drawn_.width() / 2 + input.off_px, drawn_.height() / 2 + input.off_px};
     drawn_.disc(middle.x(), middle.y(), 45, k_drawn_bright);
     drawn_.depth_disc(middle.x(), middle.y(), 45, 200);
-    if (input.blind_px > 0) drawn_.disc(middle.x(), middle.y(), input.blind_px, 0xFFFF);
+    if (input.saturated_px > 0) drawn_.disc(middle.x(), middle.y(), input.saturated_px, 0xFFFF);
     node_->camera = wide_lens(middle, input.lens_steps);
     node_->depth.kind = input.kind;
     node_->depth.saturated_from = node_->limits.reflectivity_bytes == 1 ? 255 : 0xFFFF;
@@ -138,7 +138,7 @@ class MeasuredBackProject final : public MeasuredKernel {
   }
 
   void search(CounterRandom& random, const Limits& limits) {
-    const auto change = [&](Blind input) {
+    const auto change = [&](SaturatedBlobs input) {
       switch (random.below(6)) {
         case 0:
           input.blobs = random.between(1, limits.blobs);
@@ -147,7 +147,7 @@ class MeasuredBackProject final : public MeasuredKernel {
           input.area_px = static_cast<std::uint32_t>(random.between(20, 1500));
           break;
         case 2:
-          input.blind_px = random.below(9);
+          input.saturated_px = random.below(9);
           break;
         case 3:
           input.lens_steps = random.between(3, limits.ray_steps);
@@ -161,11 +161,11 @@ class MeasuredBackProject final : public MeasuredKernel {
       }
       return input;
     };
-    Blind first;
+    SaturatedBlobs first;
     first.lens_steps = limits.ray_steps;
     for (int i = 0; i < 6; ++i) first = change(first);
-    blind(climb(first, change, [&](const Blind& input) {
-      blind(input);
+    draw_saturated(climb(first, change, [&](const SaturatedBlobs& input) {
+      draw_saturated(input);
       frame_ = drawn_.view();
       (void)node_->prepare();
       run();

@@ -66,8 +66,8 @@ class MeasuredFindBlobs final : public MeasuredKernel {
 
   // Includes a tool that is searched for everywhere: one more distance per four candidates.
   void predict_at_random(CounterRandom& random) {
-    predictions_->everywhere = true;
-    predictions_->turn = static_cast<std::uint32_t>(random.below(1 << 20));
+    predictions_->search_whole_frame = true;
+    predictions_->frame_number = static_cast<std::uint32_t>(random.below(1 << 20));
     predictions_->marker_count = limits_.tools * limits_.markers_per_tool;
     for (int i = 0; i < predictions_->marker_count; ++i) {
       const double x = random.uniform() * limits_.width;
@@ -87,7 +87,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     const int dots_a_row = (limits_.width + gap) / (1 + gap);
     const int dot_rows = (limits_.runs_per_band - wide_a_band + dots_a_row - 1) / dots_a_row;
     const int predicted = predictions_->marker_count;
-    predictions_->turn = 0;
+    predictions_->frame_number = 0;
     expect_markers(0.011);
     for (int band = 0; band < k_row_bands; ++band) {
       const int top = limits_.height * band / k_row_bands + 2;

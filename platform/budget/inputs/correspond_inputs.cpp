@@ -10,16 +10,16 @@ namespace glint::inputs {
 namespace {
 
 // The partition with the most tools.
-constexpr graph::Slice k_slice{0, k_tool_slices};
+constexpr graph::Partition k_partition{0, k_tool_partitions};
 constexpr int k_trials = 3000;  // until the worst input uses up every budget
 constexpr int k_climbs = 5;     // of the search for a worse input
 
 enum class Shape { crowd, line, swarm, copies };
 
 // Of several random tools, the one with the most equal distances: more of them match any pair.
-Tool even_tool(Numbers& numbers, int markers) {
+Tool equidistant_tool(Numbers& numbers, int markers) {
   Tool best;
-  double least = 1e9;
+  double ratio_min = 1e9;
   for (int trial = 0; trial < 12; ++trial) {
     const Tool tool = any_tool(numbers, markers);
     double longest = 0, shortest = 1e9;
@@ -29,8 +29,8 @@ Tool even_tool(Numbers& numbers, int markers) {
         shortest = std::min(shortest, tool.distance_m[i][j]);
       }
     }
-    if (longest / shortest >= least) continue;
-    least = longest / shortest;
+    if (longest / shortest >= ratio_min) continue;
+    ratio_min = longest / shortest;
     best = tool;
   }
   return best;
@@ -65,13 +65,13 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
     node_.settings = start_.settings;
   }
   void run() noexcept override {
-    node_(verdict_, markers_, tools_, predictions_, k_slice, labelings_);
+    node_(verdict_, markers_, tools_, predictions_, k_partition, labelings_);
   }
 
  private:
   void fill(Shape shape, Numbers& numbers, bool predicted, const Limits& limits) {
     const bool crowd = shape == Shape::crowd;
-    verdict_ = admitted(1);
+    verdict_ = accepted_verdict(1);
     set_.count = crowd ? 1 + numbers.below(limits.tools) : limits.tools;
     markers_.count = 0;
     predictions_ = {};
@@ -80,12 +80,12 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
       const int markers = crowd ? fewest + numbers.below(limits.markers_per_tool - fewest + 1)
                                 : limits.markers_per_tool;
       set_.items[t] =
-          shape == Shape::line ? even_tool(numbers, markers) : any_tool(numbers, markers);
+          shape == Shape::line ? equidistant_tool(numbers, markers) : any_tool(numbers, markers);
       const Pose pose = any_view(numbers);
       if (crowd) add_tool(markers_, set_.items[t], pose, 0.0015, numbers, limits.blobs);
       if (shape == Shape::copies) add_copies(set_.items[t], pose, numbers, limits);
       predictions_.tools[t].has_prior = predicted;
-      predictions_.tools[t].T_camera_tool = crowd ? moved(pose, numbers) : pose;
+      predictions_.tools[t].T_camera_tool = crowd ? displaced(pose, numbers) : pose;
       predictions_.tools[t].reach_m = 0.02;
     }
     if (crowd) {
@@ -146,8 +146,8 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
   // Keeps the most expensive of several candidate inputs.
   void climb(std::uint64_t number, const Limits& limits) {
     constexpr Shape shapes[] = {Shape::line, Shape::swarm, Shape::copies};
-    std::uint64_t best_seed = 0;
-    std::int64_t most = -1;
+    std::uint64_t best_step = 0;
+    std::int64_t effort_max = -1;
     const auto set = [&](std::uint64_t climb_step) {
       Numbers numbers(InputKind::searched, number * k_climbs + climb_step);
       fill(shapes[number % 3], numbers, numbers.one_in(2), limits);
@@ -158,11 +158,11 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
       run();
       const graph::LoopCounts counts = node_.counts();
       const std::int64_t effort = counts[6];
-      if (effort <= most) continue;
-      most = effort;
-      best_seed = step;
+      if (effort <= effort_max) continue;
+      effort_max = effort;
+      best_step = step;
     }
-    set(best_seed);
+    set(best_step);
   }
 
   FrameVerdict verdict_;

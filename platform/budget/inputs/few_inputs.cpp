@@ -44,7 +44,7 @@ class NameFewKernel final : public NodeKernel<NameFew> {
   }
 
  private:
-  FrameVerdict verdict_ = admitted(1);
+  FrameVerdict verdict_ = accepted_verdict(1);
   Markers markers_;
   ToolSet set_;
   graph::Latest<ToolSet> tools_;

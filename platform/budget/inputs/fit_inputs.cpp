@@ -17,12 +17,12 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     Numbers numbers(kind, number);
     start_.limits = limits;
-    set_.count = at_its_worst(kind) ? limits.tools : 1 + numbers.below(limits.tools);
+    set_.count = is_worst_case(kind) ? limits.tools : 1 + numbers.below(limits.tools);
     tools_.set(set_, 1, 0);
     for (int t = 0; t < set_.count; ++t) {
-      Labelings& labelings = labelings_[t % k_tool_slices].tools[t];
+      Labelings& labelings = labelings_[t % k_tool_partitions].tools[t];
       labelings = {};
-      const bool contested = at_its_worst(kind) && number % 4 != 3;
+      const bool contested = is_worst_case(kind) && number % 4 != 3;
       labelings.count = contested ? k_labelings_max : numbers.below(k_labelings_max + 1);
       for (int k = 0; k < labelings.count; ++k) {
         Labeling& labeling = labelings.items[k];
@@ -54,20 +54,20 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
     labeling.rms_m = numbers.within(0, 0.004);
     labeling.marker[0] = static_cast<std::int16_t>(k + 1 < k_labelings_max ? 0 : 1 + t);
   }
-  FrameVerdict verdict_ = admitted(1);
+  FrameVerdict verdict_ = accepted_verdict(1);
   ToolSet set_;
   graph::Latest<ToolSet> tools_;
-  graph::Parts<ToolLabelings, k_tool_slices> labelings_;
+  graph::Parts<ToolLabelings, k_tool_partitions> labelings_;
   Assignment assignment_;
 };
 
 // The node's settings for markers at their predicted positions.
-constexpr RefineSettings k_predicted = {.markers_left_least = k_predicted_left_least};
+constexpr RefineSettings k_predicted = {.markers_kept_min = k_predicted_markers_min};
 
 WeightedMarker weighed(const Tool& tool, int m, const Marker& seen, const MarkerNoise& noise) {
   const double range_m = seen.surface_range_m + tool.centre_offset_m();
-  const MarkerSight sight = sight_of(seen, range_m, noise);
-  return weigh_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
+  const MarkerMeasurementModel sight = measurement_model(seen, range_m, noise);
+  return whiten_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
 }
 
 // Number of marker steps in the fits of one tool, including the MAP pose from isolated markers near
@@ -77,8 +77,8 @@ int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noi
   std::array<WeightedMarker, k_markers_per_tool_max> markers;
   for (int m = 0; m < tool.marker_count; ++m) markers[m] = weighed(tool, m, seen[m], noise);
   const std::size_t count = static_cast<std::size_t>(tool.marker_count);
-  const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
-  const int steps = agreed_pose({markers.data(), count}, expected, k_predicted.steps_max).steps;
+  const PredictedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
+  const int steps = map_pose({markers.data(), count}, expected, k_predicted.steps_max).steps;
   return refine_pose({markers.data(), count}, tool.tip_m, nullptr, k_predicted).work.marker_steps +
          steps * tool.marker_count;
 }
@@ -88,9 +88,9 @@ class RefineKernel final : public NodeKernel<RefinePose> {
   RefineKernel() : NodeKernel("RefinePose") {}
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     Numbers numbers(kind, number);
-    const bool all = at_its_worst(kind);
+    const bool all = is_worst_case(kind);
     start_.limits = limits;
-    start_.noise = all ? k_surest : MarkerNoise{};
+    start_.noise = all ? k_smallest_noise : MarkerNoise{};
     start_.noise.focal_px = 253;
     start_.correction = {};
     if (all || numbers.one_in(2)) {
@@ -104,7 +104,8 @@ class RefineKernel final : public NodeKernel<RefinePose> {
     set_.count = all ? limits.tools : 1 + numbers.below(limits.tools);
     markers_.count = 0;
     for (int t = 0; t < set_.count; ++t) {
-      assignment_.reason[t] = all || !numbers.one_in(5) ? Reason::none : Reason::taken_by_other;
+      assignment_.reason[t] =
+          all || !numbers.one_in(5) ? Reason::none : Reason::markers_assigned_elsewhere;
       const int first = markers_.count;
       Prediction& prediction = predictions_.tools[t];
       prediction.follows_motion = all || numbers.one_in(2);
@@ -122,30 +123,30 @@ class RefineKernel final : public NodeKernel<RefinePose> {
       labeling = {};
       labeling.marker.fill(-1);
       labeling.count = markers_.count - first;
-      labeling.predicted_worth_m2 = all || numbers.one_in(2) ? 1e-5 : 0;
+      labeling.log_prior_ratio_m2 = all || numbers.one_in(2) ? 1e-5 : 0;
       for (int m = 0; m < labeling.count; ++m) {
         labeling.marker[m] = static_cast<std::int16_t>(first + m);
       }
-      assignment_.rival[t].count = 0;
+      assignment_.alternative[t].count = 0;
       if (all || numbers.one_in(2))
-        assignment_.rival[t] = rival_to(labeling, set_.items[t], numbers);
+        assignment_.alternative[t] = alternative_to(labeling, set_.items[t], numbers);
     }
-    show_in_image();
+    add_pixel_axes();
     tools_.set(set_, 1, 0);
     rewind();
   }
   void run() noexcept override {
-    node_(verdict_, markers_, tools_, predictions_, assignment_, graph::Slice{0, k_tool_slices},
-          fitted_);
+    node_(verdict_, markers_, tools_, predictions_, assignment_,
+          graph::Partition{0, k_tool_partitions}, fitted_);
   }
 
  private:
   // The smaller the markers' noise, the more steps every fit takes.
-  static constexpr MarkerNoise k_surest = {k_range_sigma_least_m, k_pixel_sigma_least_px, 0};
+  static constexpr MarkerNoise k_smallest_noise = {k_range_sigma_min_m, k_pixel_sigma_min_px, 0};
   static constexpr int k_tries = 200;
 
   // Pinhole geometry with the declared focal length: residuals need an image.
-  void show_in_image() {
+  void add_pixel_axes() {
     for (int m = 0; m < markers_.count; ++m) {
       Marker& marker = markers_.items[static_cast<std::size_t>(m)];
       marker.along_x = marker.ray.unitOrthogonal() / start_.noise.focal_px;
@@ -169,7 +170,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
         const bool astray = m < 2 || count < 5;
         const Vector3 off = astray ? numbers.in_box(0.3) : Vector3(Vector3::Zero());
         add_marker(markers_, view * tool.markers_m[m] + off, tool, k_blobs_max);
-        markers_.items[first + m].flags |= k_marker_uneven;
+        markers_.items[first + m].flags |= k_marker_not_isolated;
       }
       const int steps = marker_steps_of(tool, &markers_.items[first], start_.noise, prediction);
       if (steps <= reached) continue;
@@ -182,9 +183,9 @@ class RefineKernel final : public NodeKernel<RefinePose> {
   }
 
   // Permutes the markers' labels; returns the permutation whose fits take the most steps.
-  Labeling rival_to(const Labeling& labeling, const Tool& tool, Numbers& numbers) {
-    constexpr RefineSettings k_all_count = {.left_out_max = 0};
-    const int most = refine_work_max(labeling.count, k_all_count).marker_steps;
+  Labeling alternative_to(const Labeling& labeling, const Tool& tool, Numbers& numbers) {
+    constexpr RefineSettings k_all_markers = {.rejected_max = 0};
+    const int most = refine_work_max(labeling.count, k_all_markers).marker_steps;
     Labeling hardest = labeling, tried = labeling;
     for (int reached = -1, tries = 0; reached < most && tries < k_tries; ++tries) {
       for (int m = labeling.count - 1; m > 0; --m)
@@ -194,7 +195,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
         seen[m] = weighed(tool, m, markers_.items[tried.marker[m]], start_.noise);
       const std::size_t count = static_cast<std::size_t>(labeling.count);
       const int steps =
-          refine_pose({seen.data(), count}, tool.tip_m, nullptr, k_all_count).work.marker_steps;
+          refine_pose({seen.data(), count}, tool.tip_m, nullptr, k_all_markers).work.marker_steps;
       if (steps <= reached) continue;
       reached = steps;
       hardest = tried;
@@ -202,7 +203,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
     return hardest;
   }
 
-  FrameVerdict verdict_ = admitted(1);
+  FrameVerdict verdict_ = accepted_verdict(1);
   Markers markers_;
   ToolSet set_;
   graph::Latest<ToolSet> tools_;

@@ -13,36 +13,36 @@
 namespace glint::inputs {
 namespace {
 
-constexpr double k_shift_sigma_m = 0.0005, k_turn_sigma_rad = 0.004;
-constexpr int k_frames_to_fill = k_rest_frames_max + 2;
-constexpr int k_rests = 4;  // full static windows from which the worst inputs start
+constexpr double k_translation_sigma_m = 0.0005, k_rotation_sigma_rad = 0.004;
+constexpr int k_frames_to_fill = k_static_frames_max + 2;
+constexpr int k_static_windows = 4;  // full static windows from which the worst inputs start
 
 // The partition with the most tools, and its next frame.
 class FollowKernel final : public NodeKernel<FollowMotion> {
  public:
   FollowKernel() : NodeKernel("FollowMotion") {
-    for (int i = 0; i < k_rests; ++i) {
+    for (int i = 0; i < k_static_windows; ++i) {
       Numbers numbers(InputKind::worst, static_cast<std::uint64_t>(i));
       begin(numbers, k_tools_max, k_markers_per_tool_max);
       for (int frame = 0; frame < k_frames_to_fill; ++frame) follow(numbers, Vector3::Zero());
-      rests_[i] = {start_, anchor_, set_, rest_, last_, frame_};
+      static_windows_[i] = {start_, anchor_, set_, static_poses_, last_, frame_};
     }
   }
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     Numbers numbers(kind, number);
     if (kind == InputKind::worst || kind == InputKind::searched) {
-      const Rested& rested = rests_[number % k_rests];
-      start_ = rested.node;
-      anchor_ = rested.anchor;
-      set_ = rested.set;
-      rest_ = rested.rest;
-      last_ = rested.last;
-      frame_ = rested.frame;
+      const StaticWindow& window = static_windows_[number % k_static_windows];
+      start_ = window.node;
+      anchor_ = window.anchor;
+      set_ = window.set;
+      static_poses_ = window.static_poses;
+      last_ = window.last;
+      frame_ = window.frame;
       set_.count = limits.tools;
       start_.limits = limits;
-      see(numbers, Vector3::Zero(), 0);
+      measure(numbers, Vector3::Zero(), 0);
       anchor_.now.moved_along = anchor_.now.in_gap = true;
-      anchor_.now.stepped = Matrix6::Identity() * 1e-9;
+      anchor_.now.step_covariance = Matrix6::Identity() * 1e-9;
     } else {
       const int markers = 3 + numbers.below(limits.markers_per_tool - 2);
       begin(numbers, 1 + numbers.below(limits.tools), markers);
@@ -50,7 +50,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       const Vector3 velocity = numbers.one_in(3) ? Vector3(Vector3::Zero()) : numbers.in_box(1);
       const int before = numbers.below(24);
       for (int frame = 0; frame < before; ++frame) follow(numbers, velocity);
-      see(numbers, velocity, 5);
+      measure(numbers, velocity, 5);
     }
     tools_.set(set_, 1, 0);
     rewind();
@@ -58,18 +58,18 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
   // All slots were occupied before: each call includes the cost of clearing them.
   void rewind() override {
     NodeKernel::rewind();
-    const int places = tools_of(start_.limits, {0, k_tool_slices});
-    for (int place = 0; place < places; ++place) followed_.items[place].in_use = true;
+    const int slots = tools_of(start_.limits, {0, k_tool_partitions});
+    for (int slot = 0; slot < slots; ++slot) followed_.items[slot].in_use = true;
   }
   void run() noexcept override { call(node_, followed_); }
 
  private:
-  using Followed = graph::Parts<FollowedTools, k_tool_slices>;
-  struct Rested {
+  using Followed = graph::Parts<FollowedTools, k_tool_partitions>;
+  struct StaticWindow {
     FollowMotion node;
     Anchor anchor;
     ToolSet set;
-    std::array<Pose, k_tools_max> rest;
+    std::array<Pose, k_tools_max> static_poses;
     Followed last;
     int frame;
   };
@@ -81,60 +81,63 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
     set_.count = tools;
     for (int t = 0; t < tools; ++t) {
       set_.items[t] = any_tool(numbers, markers);
-      rest_[t] = any_view(numbers);
+      static_poses_[t] = any_view(numbers);
     }
     anchor_.now = {};
     anchor_.now.head.valid = true;
     anchor_.now.head.T_world_camera = {numbers.rotation(), numbers.in_box(2)};
-    anchor_.now.fresh = Matrix6::Identity() * 1e-9;
+    anchor_.now.independent = Matrix6::Identity() * 1e-9;
     tools_.set(set_, 1, 0);
   }
   // Misses one in `missed` tools; none for 0.
-  void see(Numbers& numbers, const Vector3& velocity, int missed) {
-    verdict_ = admitted(static_cast<std::uint64_t>(++frame_));
+  void measure(Numbers& numbers, const Vector3& velocity, int missed) {
+    verdict_ = accepted_verdict(static_cast<std::uint64_t>(++frame_));
     anchor_.now.head.time = verdict_.stamp.mid_exposure;
-    for (int t = 0; t < set_.count; t += k_tool_slices) {
+    for (int t = 0; t < set_.count; t += k_tool_partitions) {
       FittedTool& tool = fitted_[0].tools[t];
       const bool found = missed == 0 || !numbers.one_in(missed);
       tool.reason = found ? Reason::none : Reason::no_labeling;
-      show_few(t, found ? 0 : numbers.below(k_few_max + 1));
-      const Vector3 noise = 1.7 * k_shift_sigma_m * numbers.in_box(2);
-      const Vector3 turn = 1.7 * k_turn_sigma_rad * numbers.in_box(2);
-      tool.T_camera_tool.rotation = (from_rotation_vector(turn) * rest_[t].rotation).normalized();
-      tool.T_camera_tool.translation = rest_[t].translation + noise + velocity * (0.022 * frame_);
+      show_few(t, found ? 0 : numbers.below(k_partial_markers_max + 1));
+      const Vector3 noise = 1.7 * k_translation_sigma_m * numbers.in_box(2);
+      const Vector3 rotation = 1.7 * k_rotation_sigma_rad * numbers.in_box(2);
+      tool.T_camera_tool.rotation =
+          (from_rotation_vector(rotation) * static_poses_[t].rotation).normalized();
+      tool.T_camera_tool.translation =
+          static_poses_[t].translation + noise + velocity * (0.022 * frame_);
       tool.covariance = Matrix6::Zero();
-      tool.covariance.diagonal() << Vector3::Constant(k_shift_sigma_m * k_shift_sigma_m),
-          Vector3::Constant(k_turn_sigma_rad * k_turn_sigma_rad);
+      tool.covariance.diagonal() << Vector3::Constant(k_translation_sigma_m *
+                                                      k_translation_sigma_m),
+          Vector3::Constant(k_rotation_sigma_rad * k_rotation_sigma_rad);
       const Vector3 arm = set_.items[t].tip_m - set_.items[t].middle_m();
       tool.covariance = moved_covariance(tool.covariance, tool.T_camera_tool.rotation * arm);
     }
   }
   // Sets `count` visible markers of a tool at its static pose.
   void show_few(int t, int count) {
-    FewMarkers& few = few_.tools[t];
+    PartialMarkers& few = few_.tools[t];
     few.count = count;
     for (int m = 0; m < count; ++m) {
-      few.items[m] = {m, rest_[t] * set_.items[t].markers_m[m], Matrix3::Identity() * 1e-6};
+      few.items[m] = {m, static_poses_[t] * set_.items[t].markers_m[m], Matrix3::Identity() * 1e-6};
     }
   }
   void follow(Numbers& numbers, const Vector3& velocity) {
-    see(numbers, velocity, 0);
+    measure(numbers, velocity, 0);
     call(start_, followed_);
     last_[0] = followed_;
   }
   void call(FollowMotion& node, FollowedTools& followed) noexcept {
     node(verdict_, anchor_, tools_, fitted_, few_, graph::Previous<Followed>(last_),
-         graph::Slice{0, k_tool_slices}, followed);
+         graph::Partition{0, k_tool_partitions}, followed);
   }
 
-  std::array<Rested, k_rests> rests_;
-  std::array<Pose, k_tools_max> rest_;
+  std::array<StaticWindow, k_static_windows> static_windows_;
+  std::array<Pose, k_tools_max> static_poses_;
   int frame_ = 0;
   FrameVerdict verdict_;
   Anchor anchor_;
   ToolSet set_;
   graph::Latest<ToolSet> tools_;
-  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  graph::Parts<FittedTools, k_tool_partitions> fitted_;
   SeenFew few_;
   Followed last_;
   FollowedTools followed_;
@@ -155,9 +158,9 @@ class AnchorKernel final : public NodeKernel<AnchorHead> {
     last_ = {};
     const Pose T_world_camera{numbers.rotation(), numbers.in_box(2)};
     const Pose T_camera_body = any_view(numbers);
-    const int before = k_anchor_frames + numbers.below(20);
+    const int before = k_body_definition_frames + numbers.below(20);
     for (int frame = 0; frame <= before; ++frame) {
-      verdict_ = admitted(static_cast<std::uint64_t>(frame));
+      verdict_ = accepted_verdict(static_cast<std::uint64_t>(frame));
       const bool last = frame == before;
       head_.valid = all || !last || !numbers.one_in(4);
       head_.time = verdict_.stamp.mid_exposure;
@@ -185,7 +188,7 @@ class AnchorKernel final : public NodeKernel<AnchorHead> {
   HeadPose head_;
   ToolSet set_;
   graph::Latest<ToolSet> tools_;
-  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  graph::Parts<FittedTools, k_tool_partitions> fitted_;
   Anchor last_, anchor_;
 };
 

@@ -17,13 +17,13 @@ class PredictToolsKernel final : public NodeKernel<PredictTools> {
   }
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     Numbers numbers(kind, number);
-    const bool all = at_its_worst(kind);
+    const bool all = is_worst_case(kind);
     node_.limits = limits;
     now_ = {Time{} + milliseconds(1000), static_cast<std::uint64_t>(number),
             1'700'000'000'000'000'000};
-    known_.tool_count = all ? limits.tools : 1 + numbers.below(limits.tools);
-    for (int t = 0; t < known_.tool_count; ++t) {
-      Track& track = known_.tracks[t];
+    latest_estimates_.tool_count = all ? limits.tools : 1 + numbers.below(limits.tools);
+    for (int t = 0; t < latest_estimates_.tool_count; ++t) {
+      Track& track = latest_estimates_.tracks[t];
       track = {};
       track.alive = all || !numbers.one_in(5);
       track.base = all || !numbers.one_in(4) ? ReferenceFrame::world : ReferenceFrame::camera;
@@ -40,9 +40,9 @@ class PredictToolsKernel final : public NodeKernel<PredictTools> {
       track.motion.angular_acceleration_rad_s2 = numbers.in_box(40);
       track.motion.covariance = MotionCovariance::Identity() * 1e-4;
       track.marker_mask = 31;
-      known_.tips[t] = {{0, 0, -0.12}, 3e-4};
+      latest_estimates_.tips[t] = {{0, 0, -0.12}, 3e-4};
     }
-    estimates_.set(known_, 1, 0);
+    estimates_.set(latest_estimates_, 1, 0);
     RobotFrame robot;
     robot.state = all || !numbers.one_in(4) ? RegistrationState::given : RegistrationState::none;
     robot.T_world_robot = {numbers.rotation(), numbers.in_box(2)};
@@ -54,7 +54,7 @@ class PredictToolsKernel final : public NodeKernel<PredictTools> {
 
  private:
   Now now_;
-  Estimates known_;
+  Estimates latest_estimates_;
   graph::Latest<Estimates> estimates_;
   graph::Latest<RobotFrame> robot_;
   graph::Latest<PenButtons> buttons_;
@@ -66,7 +66,7 @@ class PackCanKernel final : public NodeKernel<PackCan> {
   PackCanKernel() : NodeKernel("PackCan") {}
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     Numbers numbers(kind, number);
-    const bool all = at_its_worst(kind);
+    const bool all = is_worst_case(kind);
     start_ = {};
     start_.limits = limits;
     start_.settings.format = number % 2 == 0 ? CanFormat::classic : CanFormat::fd;

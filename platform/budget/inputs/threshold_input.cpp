@@ -10,7 +10,7 @@ namespace {
 // Runs at equal distances. Their number over all rows is the capacity of a band's buffer, so that
 // none ends the search before the last block.
 struct SpreadRuns {
-  int a_band = 0;          // runs per band; 0: none, but the layout's pattern
+  int per_band = 0;        // runs per band; 0: none, but the layout's pattern
   int length = 1;          // limited so that runs never touch
   bool scattered = false;  // at a random position in its part of the row
 };
@@ -18,7 +18,7 @@ struct SpreadRuns {
 struct Layout {
   RunPattern pattern;
   SpreadRuns spread;
-  int strips = 1;       // ROIs side by side
+  int rois = 1;         // ROIs side by side
   bool narrow = false;  // all but one of them one pixel wide
 };
 
@@ -65,9 +65,9 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
     layout.pattern.x1 = limits.width;
     layout.pattern.y1 = limits.height;
     layout.pattern.skip = 0;
-    layout.strips = std::max(limits.tools, 1);
+    layout.rois = std::max(limits.tools, 1);
     layout.narrow = variant % 2 == 0;
-    layout.spread.a_band = threshold_work_max(limits, k_row_bands).runs;
+    layout.spread.per_band = threshold_work_max(limits, k_row_bands).runs;
     switch (variant / 2 % 6) {
       case 1:
         layout.spread.scattered = true;
@@ -76,21 +76,21 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
         layout.spread.length = limits.width;
         break;
       case 3:
-        layout.spread.a_band = 0;  // a checkerboard, which fills the buffer early
+        layout.spread.per_band = 0;  // a checkerboard, which fills the buffer early
         layout.pattern.shift = 1;
         break;
       case 4:
-        layout.spread.a_band = 0;
+        layout.spread.per_band = 0;
         layout.pattern.run = limits.width;
         break;
       case 5:
-        layout.spread.a_band /= 2;
+        layout.spread.per_band /= 2;
         layout.spread.scattered = true;
         break;
       default:
         break;
     }
-    if (variant / 12 % 2 == 1) layout.strips = 1;
+    if (variant / 12 % 2 == 1) layout.rois = 1;
     return layout;
   }
 
@@ -100,7 +100,7 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
     const int rows = height * (band_.index + 1) / band_.count - top;
     CounterRandom random(3, InputKind::worst, 0);
     for (int row = 0; row < rows; ++row) {
-      const int n = spread.a_band * (row + 1) / rows - spread.a_band * row / rows;
+      const int n = spread.per_band * (row + 1) / rows - spread.per_band * row / rows;
       const int part = n > 0 ? width / 2 / n : 0;  // of a row's even columns, for each run
       for (int i = 0; i < n; ++i) {
         const int x = 2 * (i * part + (spread.scattered ? random.below(part) : 0));
@@ -114,13 +114,13 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
   // ROI.
   void lay_out(const Layout& layout) {
     drawn_.clear(node_->limits);
-    if (layout.spread.a_band > 0) {
+    if (layout.spread.per_band > 0) {
       draw_spread(layout.spread);
     } else {
       drawn_.pattern(layout.pattern);
     }
     const int width = drawn_.width(), height = drawn_.height();
-    rois_.count = std::clamp(layout.strips, 1, std::min(width, node_->limits.tools));
+    rois_.count = std::clamp(layout.rois, 1, std::min(width, node_->limits.tools));
     for (int i = 0; i < rois_.count; ++i) {
       Roi& roi = rois_.items[static_cast<std::size_t>(i)];
       roi = {width * i / rois_.count, 0, width * (i + 1) / rois_.count, height};
@@ -162,7 +162,7 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
           layout.pattern.skip = other.skip;
           break;
         case 3:
-          layout.strips = random.between(1, std::max(limits.tools, 1));
+          layout.rois = random.between(1, std::max(limits.tools, 1));
           break;
         default:
           layout.narrow = !layout.narrow;
@@ -184,7 +184,7 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
   DrawnFrame drawn_;
   Frame frame_;
   Rois rois_;
-  graph::Slice band_;
+  graph::Partition band_;
 };
 
 }  // namespace

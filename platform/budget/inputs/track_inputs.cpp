@@ -45,12 +45,12 @@ class CheckKernel final : public NodeKernel<CheckFrame> {
   void set_input(InputKind kind, std::uint64_t number, const Limits&) override {
     Numbers numbers(kind, number);
     start_ = {};
-    const int before = at_its_worst(kind) ? 1 + static_cast<int>(number % 12) : numbers.below(12);
+    const int before = is_worst_case(kind) ? 1 + static_cast<int>(number % 12) : numbers.below(12);
     for (int i = 0; i < before; ++i) {
-      const bool back = at_its_worst(kind) ? i > 0 : numbers.one_in(3);
+      const bool back = is_worst_case(kind) ? i > 0 : numbers.one_in(3);
       start_(stamp_at(back ? i : 1000 + i, i), verdict_);
     }
-    const bool back = at_its_worst(kind) || numbers.one_in(3);
+    const bool back = is_worst_case(kind) || numbers.one_in(3);
     stamp_ = stamp_at(back ? before : 1000 + before, before);
     if (numbers.one_in(8)) stamp_.reason = Reason::frame_invalid;
     rewind();
@@ -71,14 +71,14 @@ class CheckKernel final : public NodeKernel<CheckFrame> {
 
 // Input of several nodes: moving tools and a moving head.
 struct Tracked {
-  FrameVerdict verdict = admitted(2);
+  FrameVerdict verdict = accepted_verdict(2);
   HeadPose head;
   ToolSet set;
   graph::Latest<ToolSet> tools;
   Estimates last;
 
   void fill(InputKind kind, Numbers& numbers, const Limits& limits) {
-    const bool all = at_its_worst(kind);
+    const bool all = is_worst_case(kind);
     head.valid = all || !numbers.one_in(4);
     head.time = verdict.stamp.mid_exposure;
     head.T_world_camera = {numbers.rotation(), numbers.in_box(2)};
@@ -89,11 +89,11 @@ struct Tracked {
           all ? limits.markers_per_tool : 3 + numbers.below(limits.markers_per_tool - 2);
       set.items[t] = any_tool(numbers, markers);
       const Pose seen = any_view(numbers);
-      const Pose before = moved(seen, numbers);
+      const Pose before = displaced(seen, numbers);
       Track& track = last.tracks[t];
       track = {};
       track.alive = all || !numbers.one_in(4);
-      track.seen_now = all || !numbers.one_in(4);
+      track.measured_now = all || !numbers.one_in(4);
       track.has_previous = track.alive && (all || !numbers.one_in(4));
       track.base = head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
       const Pose base = head.valid ? head.T_world_camera : Pose{};
@@ -145,7 +145,7 @@ class PredictTracksKernel final : public NodeKernel<PredictTracks> {
     start_.camera.lens = Lens::rational;
     start_.camera.distortion = {0.48, 0.19, 0.0008, -0.0001, 0.014, 0.82, 0.29, 0.062};
     tracked_.fill(kind, numbers, limits);
-    if (limits.lens_steps > 0 && (at_its_worst(kind) || numbers.one_in(2))) look_beside_the_table();
+    if (limits.lens_steps > 0 && (is_worst_case(kind) || numbers.one_in(2))) use_narrow_table();
     rewind();
   }
   void run() noexcept override {
@@ -155,7 +155,7 @@ class PredictTracksKernel final : public NodeKernel<PredictTracks> {
 
  private:
   // A lens table so narrow that every marker is outside it: the pixel search never ends early.
-  void look_beside_the_table() {
+  void use_narrow_table() {
     start_.camera.lens = Lens::lut;
     start_.camera.width = start_.camera.height = k_table_side;
     start_.camera.cx = start_.camera.cy = 0.5 * k_table_side;
@@ -183,17 +183,17 @@ class LocateRoisKernel final : public NodeKernel<LocateRois> {
     start_.limits = limits;
     start_.camera.width = limits.width;
     start_.camera.height = limits.height;
-    set_.count = at_its_worst(kind) ? limits.tools : 1 + numbers.below(limits.tools);
-    predictions_.narrowed = !at_its_worst(kind) && numbers.one_in(4);
-    predictions_.turn = static_cast<std::uint32_t>(number);
+    set_.count = is_worst_case(kind) ? limits.tools : 1 + numbers.below(limits.tools);
+    predictions_.search_part_of_frame = !is_worst_case(kind) && numbers.one_in(4);
+    predictions_.frame_number = static_cast<std::uint32_t>(number);
     for (int t = 0; t < set_.count; ++t) {
       set_.items[t].marker_count = limits.markers_per_tool;
       Prediction& prediction = predictions_.tools[t];
       prediction = {};
-      prediction.has_prior = at_its_worst(kind) || !numbers.one_in(20);
+      prediction.has_prior = is_worst_case(kind) || !numbers.one_in(20);
       prediction.in_view = true;
       if (kind == InputKind::worst && number % 2 == 0) {
-        place_in_a_chain(t, set_.count, prediction);
+        chain_box(t, set_.count, prediction);
       } else {
         prediction.low_px = {numbers.within(0, limits.width - 40),
                              numbers.within(0, limits.height - 40)};
@@ -209,14 +209,14 @@ class LocateRoisKernel final : public NodeKernel<LocateRois> {
  private:
   // Boxes below each other, each overlapping two columns of the next. The last box, as high as all
   // of them, meets one box, and only after merging with it the next.
-  static void place_in_a_chain(int t, int count, Prediction& prediction) {
+  static void chain_box(int t, int count, Prediction& prediction) {
     const bool last = t == count - 1;
     const int from_right = count - 1 - t;
     const double left = last ? 4.0 : 4.0 + 24.0 * from_right - 14.0;
     prediction.low_px = {left, last ? 4.0 : 10.0 + 12.0 * t};
     prediction.high_px = {left + (last ? 12.0 : 26.0), last ? 250.0 : 18.0 + 12.0 * t};
   }
-  FrameVerdict verdict_ = admitted(2);
+  FrameVerdict verdict_ = accepted_verdict(2);
   ToolSet set_;
   graph::Latest<ToolSet> tools_;
   Predictions predictions_;
@@ -231,15 +231,15 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
     start_.limits = limits;
     tracked_.fill(kind, numbers, limits);
     for (int t = 0; t < tracked_.set.count; ++t) {
-      FittedTool& tool = fitted_[t % k_tool_slices].tools[t];
-      tool.reason = at_its_worst(kind) || !numbers.one_in(4) ? Reason::none : Reason::no_labeling;
+      FittedTool& tool = fitted_[t % k_tool_partitions].tools[t];
+      tool.reason = is_worst_case(kind) || !numbers.one_in(4) ? Reason::none : Reason::no_labeling;
       tool.T_camera_tool = any_view(numbers);
-      followed_[t % k_tool_slices].items[t / k_tool_slices].reason = tool.reason;
-      followed_[t % k_tool_slices].items[t / k_tool_slices].stands = true;
+      followed_[t % k_tool_partitions].items[t / k_tool_partitions].reason = tool.reason;
+      followed_[t % k_tool_partitions].items[t / k_tool_partitions].is_publishable = true;
     }
     anchor_.now.head = tracked_.head;
-    anchor_.now.lasting = Matrix6::Identity() * 1e-6;
-    anchor_.now.moved_along = at_its_worst(kind) || numbers.one_in(20);
+    anchor_.now.shared = Matrix6::Identity() * 1e-6;
+    anchor_.now.moved_along = is_worst_case(kind) || numbers.one_in(20);
     rewind();
   }
   // All slots were occupied before: each call includes the cost of clearing them.
@@ -254,8 +254,8 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
 
  private:
   Tracked tracked_;
-  graph::Parts<FittedTools, k_tool_slices> fitted_;
-  graph::Parts<FollowedTools, k_tool_slices> followed_;
+  graph::Parts<FittedTools, k_tool_partitions> fitted_;
+  graph::Parts<FollowedTools, k_tool_partitions> followed_;
   Anchor anchor_;
   Estimates estimates_;
 };

@@ -43,13 +43,13 @@ void add_tool(Markers& markers, const Tool& tool, const Pose& pose, double sigma
   }
 }
 
-Pose moved(const Pose& from, Numbers& numbers) {
+Pose displaced(const Pose& from, Numbers& numbers) {
   const Vector3 turn = numbers.in_box(0.1);
   return {(from_rotation_vector(turn) * from.rotation).normalized(),
           from.translation + numbers.in_box(0.04)};
 }
 
-FrameVerdict admitted(std::uint64_t sequence) {
+FrameVerdict accepted_verdict(std::uint64_t sequence) {
   FrameVerdict verdict;
   verdict.stamp.mid_exposure = Time{} + milliseconds(22) * (sequence + 1);
   verdict.stamp.arrival = verdict.stamp.mid_exposure + milliseconds(9);

@@ -23,9 +23,9 @@ void add_tool(Markers& markers, const Tool& tool, const Pose& pose, double sigma
               Numbers& numbers, int at_most);
 
 // A pose that a hand can reach within 22 ms.
-[[nodiscard]] Pose moved(const Pose& from, Numbers& numbers);
+[[nodiscard]] Pose displaced(const Pose& from, Numbers& numbers);
 
 // A verdict that accepts frame `sequence`.
-[[nodiscard]] FrameVerdict admitted(std::uint64_t sequence);
+[[nodiscard]] FrameVerdict accepted_verdict(std::uint64_t sequence);
 
 }  // namespace glint::inputs

@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 // Rounds up to the resolution of a board file, so that writing preserves the envelope.
-double thousandths_up(double cost) {
+double rounded_up(double cost) {
   return cost > 0 ? std::ceil(cost * 1000 - 1e-6) / 1000 : 0;  // avoids a negative zero
 }
 
@@ -30,12 +30,12 @@ MeasuredCosts costs_of(const KernelObservations& kernel, const BoardKernel* boar
   result.declared = kernel.worst[0];
   std::array<ProblemSize, k_limit_sets> sizes;  // from the fitted half
   for (std::size_t i = 0; i < k_limit_sets; ++i) sizes[i].maximum = kernel.worst[i];
-  double dearest = -1;
+  double cost_max = -1;
   for (const Observation& seen : kernel.calls) {
-    const bool fits = fits_on(seen.input);
+    const bool fits = is_in_fit_half(seen.input);
     half[fits ? 0 : 1].push_back(seen.call);
     ProblemSize& size = sizes[seen.input.limits];
-    if (fits) size.dearest = std::max(size.dearest, seen.call.cost);
+    if (fits) size.cost_max = std::max(size.cost_max, seen.call.cost);
     result.sorted_costs.push_back(seen.call.cost);
     for (std::size_t j = 0; j < graph::k_loops_max; ++j) {
       result.observed[j] = std::max(result.observed[j], seen.call.counts[j]);
@@ -44,8 +44,8 @@ MeasuredCosts costs_of(const KernelObservations& kernel, const BoardKernel* boar
     result.beyond_declared += graph::within(seen.call.counts, declared) ? 0 : 1;
     double& most = result.at[seen.input.limits].observed_max;
     most = std::max(most, seen.call.cost);
-    if (seen.call.cost > dearest) {
-      dearest = seen.call.cost;
+    if (seen.call.cost > cost_max) {
+      cost_max = seen.call.cost;
       result.worst_input = seen.input;
     }
   }
@@ -61,15 +61,15 @@ MeasuredCosts costs_of(const KernelObservations& kernel, const BoardKernel* boar
       throw InputError(kernel.name +
                        ": no costs can be fitted: " + std::string(name_of(envelope.fault)));
     }
-    for (double& cost : envelope.cost) cost = thousandths_up(cost);
+    for (double& cost : envelope.cost) cost = rounded_up(cost);
   }
   result.cost.assign(envelope.cost.begin(),
                      envelope.cost.begin() + static_cast<std::ptrdiff_t>(kernel.loops.size()));
   for (std::size_t i = 0; i < k_limit_sets; ++i) {
     result.at[i].bound = cost_of(envelope, kernel.worst[i]);
   }
-  result.fit_half = judge(envelope, half[0]);
-  result.judge_half = judge(envelope, half[1]);
+  result.fit_half = validate(envelope, half[0]);
+  result.judge_half = validate(envelope, half[1]);
   return result;
 }
 

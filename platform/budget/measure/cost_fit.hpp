@@ -24,7 +24,7 @@ struct MeasuredCosts {
   std::vector<double> cost;  // per count; thousandths, rounded up
   graph::LoopCounts declared, observed;
   std::array<BoundCheck, k_limit_sets> at;  // Limits{} and a cell's
-  EnvelopeJudgement fit_half, judge_half;
+  EnvelopeValidation fit_half, judge_half;
   MeasuredInput worst_input;  // the most expensive input
   std::vector<double> sorted_costs;
   std::int64_t beyond_declared = 0;  // calls in which a loop exceeded its declared maximum

@@ -28,7 +28,7 @@ namespace glint {
 }
 
 // Nanoseconds per count, calibrated against the system's clock over 50 ms.
-[[nodiscard]] inline double nanoseconds_of_a_count() {
+[[nodiscard]] inline double nanoseconds_per_count() {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   const std::uint64_t first = cycle_count();
@@ -41,7 +41,7 @@ namespace glint {
 
 // Smallest nonzero difference of two readings: on some machines the counter advances in steps of
 // many counts.
-[[nodiscard]] inline std::uint64_t step_of_the_count() {
+[[nodiscard]] inline std::uint64_t counter_step() {
   std::uint64_t least = ~std::uint64_t{0};
   std::uint64_t before = cycle_count();
   for (int reading = 0; reading < 10'000; ++reading) {

@@ -53,7 +53,7 @@ struct MeasuredInput {
 
 // Returns whether the envelope is fitted on this input; it is judged on the others. Source:
 // SplitMix64's finalizer, Steele, Lea, Flood 2014, fig. 14.
-[[nodiscard]] constexpr bool fits_on(const MeasuredInput& input) {
+[[nodiscard]] constexpr bool is_in_fit_half(const MeasuredInput& input) {
   std::uint64_t bits = input.number * 8 + static_cast<std::uint64_t>(input.kind) * 2 + input.limits;
   bits += 0x9E3779B97F4A7C15u;
   bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;

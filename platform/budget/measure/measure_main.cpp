@@ -62,8 +62,8 @@ class Meter {
       return;
     }
     stay_on_core(k_measured_core);
-    ns_of_a_count_ = nanoseconds_of_a_count();
-    step_counts_ = static_cast<double>(step_of_the_count());
+    ns_of_a_count_ = nanoseconds_per_count();
+    step_counts_ = static_cast<double>(counter_step());
     repeat_ = 1001;
     empty_counts_ = median_counts(empty);
     repeat_ = arguments.repeat;

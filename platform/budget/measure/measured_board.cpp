@@ -82,7 +82,7 @@ Board measured_board(const Measurement& measurement, const BoardRequest& request
   for (const KernelLoops& kernel : kernels) {
     board.kernels.push_back({kernel, costs_in(measurement, kernel)});
   }
-  price(board);
+  compute_costs(board);
   return board;
 }
 
@@ -121,7 +121,7 @@ Board with_kernels(const Board& old, const Measurement& measurement, const Board
       board.kernels.push_back({kernel, costs_in(measurement, kernel)});
     }
   }
-  price(board);
+  compute_costs(board);
   return board;
 }
 
@@ -137,7 +137,7 @@ SystemShare system_share_in(const std::string& file) {
   share.interrupt_ns = reader.integer("interrupt_ns", 0, 0, second);
   share.interrupt_gap_ns = reader.integer("interrupt_gap_ns", 0, 0, second);
   share.can_write_ns = reader.integer("can_write_ns", 0, 0, second);
-  share.core_handover_ns = reader.integer("core_handover_ns", 0, 0, second);
+  share.inter_core_delay_ns = reader.integer("core_handover_ns", 0, 0, second);
   return share;
 }
 

@@ -138,7 +138,7 @@ class MeasuringRun {
   MeasuringFolder folder_;
 };
 
-void keep_least(KernelObservations& kept, const KernelObservations& pass) {
+void keep_minimum(KernelObservations& kept, const KernelObservations& pass) {
   if (kept.calls.size() != pass.calls.size()) {
     throw InputError(kept.name + ": " + std::to_string(pass.calls.size()) +
                      " calls in a pass; expected " + std::to_string(kept.calls.size()));
@@ -154,13 +154,13 @@ void keep_least(KernelObservations& kept, const KernelObservations& pass) {
 
 }  // namespace
 
-void keep_least(Observations& kept, const Observations& pass) {
+void keep_minimum(Observations& kept, const Observations& pass) {
   if (kept.kernels.size() != pass.kernels.size()) {
     throw InputError(std::to_string(pass.kernels.size()) + " kernels in a pass; expected " +
                      std::to_string(kept.kernels.size()));
   }
   for (std::size_t i = 0; i < kept.kernels.size(); ++i) {
-    keep_least(kept.kernels[i], pass.kernels[i]);
+    keep_minimum(kept.kernels[i], pass.kernels[i]);
   }
 }
 

@@ -51,7 +51,7 @@ struct Observations {
 // Keeps the smaller cost of each call from several passes. On a shared machine, other processes
 // differ between passes, and their time is not the kernel's. Throws InputError if a call of the
 // other pass has other counts.
-void keep_least(Observations& kept, const Observations& pass);
+void keep_minimum(Observations& kept, const Observations& pass);
 
 // Parses one kernel's file, with the costs of `counted` (an empty call first) if it is not empty.
 // Throws InputError if the two do not match.

@@ -25,7 +25,7 @@ Document budget_report(const ReportSources& sources, const ReportOptions& option
       loops_section(sources),        costs_section(sources),
       interference_section(sources), can_section(sources),
       estimates_section(sources),    worst_frames_section(sources, options.worst_frames),
-      footprint_section(sources),    spoiled_section(sources),
+      footprint_section(sources),    timing_faults_section(sources),
       inputs_section(sources)};
   return document;
 }

@@ -64,7 +64,7 @@ struct Headline {
   std::string provenance;  // board, table, build, machine, n
 };
 
-enum class Verdict { holds, fails, void_bound, not_shown };
+enum class Verdict { holds, fails, invalid_bound, not_shown };
 
 struct Document {
   std::string title, subtitle;

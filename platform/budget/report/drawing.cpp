@@ -27,10 +27,10 @@ std::string fitting(std::string_view words, double width, double size) {
   return std::string(words.substr(0, room - 1)) + "\u2026";
 }
 
-Drawing::Drawing(double width, double height, std::string_view spoken) {
+Drawing::Drawing(double width, double height, std::string_view alternative_text) {
   body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\"" + attribute("width", width) +
           attribute("height", height) + " viewBox=\"0 0 " + number_text(width, 2) + ' ' +
-          number_text(height, 2) + "\"><title>" + printable_markup(spoken) + "</title>\n";
+          number_text(height, 2) + "\"><title>" + printable_markup(alternative_text) + "</title>\n";
 }
 
 void Drawing::line(double x1, double y1, double x2, double y2, std::string_view classes) {

@@ -13,8 +13,8 @@ struct Box {
 
 class Drawing {
  public:
-  // `spoken`: alternative text for screen readers.
-  Drawing(double width, double height, std::string_view spoken);
+  // `alternative_text`: alternative text for screen readers.
+  Drawing(double width, double height, std::string_view alternative_text);
 
   void line(double x1, double y1, double x2, double y2, std::string_view classes);
   // `hint`: tooltip; may be empty.

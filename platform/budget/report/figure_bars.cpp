@@ -128,24 +128,24 @@ Illustration histogram_figure(const NodeTimes& node) {
 Illustration quantile_figure(const std::string& name, const std::string& title,
                              const ExtremeEstimate& estimate) {
   constexpr double width = 340, height = 280, left = 62, top = 30, size = 200;
-  const std::vector<double>& judged = estimate.judged_values;
-  const auto n = static_cast<double>(judged.size());
+  const std::vector<double>& verification = estimate.verification_values;
+  const auto n = static_cast<double>(verification.size());
   std::vector<double> expected;
-  for (std::size_t i = 0; i < judged.size(); ++i) {
+  for (std::size_t i = 0; i < verification.size(); ++i) {
     expected.push_back(estimate.distribution.quantile((static_cast<double>(i) + 0.5) / n));
   }
-  const double low = std::min(judged.front(), expected.front());
-  const double high = std::max({judged.back(), expected.back(), low + 1e-9});
+  const double low = std::min(verification.front(), expected.front());
+  const double high = std::max({verification.back(), expected.back(), low + 1e-9});
   const auto place = [&](double value) { return (value - low) / (high - low) * size; };
   const std::string caption = title + ": the half that was not fitted (" +
-                              std::to_string(judged.size()) +
+                              std::to_string(verification.size()) +
                               " extremes) over the fit's quantiles: on the line where both agree.";
   Drawing drawing(width, height, caption);
   drawing.text(0, 14, title, "strong");
   drawing.box({left, top, size, size}, "lane");
   drawing.line(left, top + size, left + size, top, "axis");
-  for (std::size_t i = 0; i < judged.size(); ++i) {
-    drawing.box({left + place(expected[i]) - 2, top + size - place(judged[i]) - 2, 4, 4},
+  for (std::size_t i = 0; i < verification.size(); ++i) {
+    drawing.box({left + place(expected[i]) - 2, top + size - place(verification[i]) - 2, 4, 4},
                 "fill-observed dot");
   }
   drawing.text(left, top + size + 14, micro(low), "faint small");

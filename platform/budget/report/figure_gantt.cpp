@@ -13,7 +13,7 @@ constexpr double k_width = 1080, k_left = 76, k_right = 16;
 constexpr double k_lane = 24, k_gap = 4, k_title = 24, k_axis = 34;
 constexpr int k_shades = 8;
 // Beyond this ratio a common axis would compress the shorter strips too much.
-constexpr double k_one_axis_up_to = 2.5;
+constexpr double k_common_axis_ratio_max = 2.5;
 
 // Copies of a node share its shade.
 std::string stem_of(const std::string& name) { return name.substr(0, name.find('#')); }
@@ -25,7 +25,7 @@ double end_of(const GanttStrip& strip) {
 }
 
 // The longest form that fits: full name, name without copy number, capitals, or nothing.
-std::string label_in(const std::string& name, double width) {
+std::string label_for_width(const std::string& name, double width) {
   if (fitting(name, width - 6, 11) == name) return name;
   const std::string stem = stem_of(name);
   if (fitting(stem, width - 6, 11) == stem) return stem;
@@ -63,7 +63,8 @@ void draw_strip(Drawing& drawing, const GanttStrip& strip, double top, double ra
                                   (bar.late ? " late" : " block"),
                   hint);
       if (!bar.other) {
-        drawing.text(box.x + box.width / 2, y + 16, label_in(bar.name, box.width), "inblock");
+        drawing.text(box.x + box.width / 2, y + 16, label_for_width(bar.name, box.width),
+                     "inblock");
       }
     }
     y += k_lane + k_gap;
@@ -92,7 +93,7 @@ Illustration gantt_figure(const std::string& name, const std::string& caption,
     least = least == 0 ? end : std::min(least, end);
     most = std::max(most, end);
   }
-  const bool one_axis = most <= k_one_axis_up_to * least;
+  const bool one_axis = most <= k_common_axis_ratio_max * least;
   const std::string words =
       caption + (one_axis ? "" : " Each strip has its own time axis: mind the numbers below it.");
   Drawing drawing(k_width, height, words);

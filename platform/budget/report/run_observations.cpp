@@ -77,7 +77,7 @@ RunObservations observe(const TraceFile& trace) {
   for (std::size_t group = 0; group < trace.groups.size(); ++group) {
     seen.groups.push_back(activations_of(trace, group));
   }
-  if (!seen.groups.empty()) seen.frames = latencies_of(trace, seen.groups[k_frames_of_trace]);
+  if (!seen.groups.empty()) seen.frames = latencies_of(trace, seen.groups[k_frame_group_of_trace]);
   return seen;
 }
 

@@ -11,7 +11,7 @@
 
 namespace glint {
 
-inline constexpr std::size_t k_frames_of_trace = 0;  // index in a trace's groups
+inline constexpr std::size_t k_frame_group_of_trace = 0;  // index in a trace's groups
 
 struct Activation {
   std::uint64_t number = 0;

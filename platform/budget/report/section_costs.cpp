@@ -9,7 +9,7 @@ namespace {
 
 const char* k_measure_command = "glint budget measure --json F";
 
-std::string about(const JsonView& measure) {
+std::string conditions_of(const JsonView& measure) {
   return measure.text_or("arch", "?") + ", " + measure.text_or("count", "?") + ", " +
          measure.text_or("cache", "?") + " cache, board " + measure.text_or("board", "none");
 }
@@ -33,7 +33,7 @@ std::string half_text(const JsonView& kernel, const char* half) {
 Section loops_section(const ReportSources& sources) {
   Section section{"loops", "Loop-count ledger", {}};
   if (sources.measures.empty()) {
-    section.blocks.push_back(not_given("--measure F", k_measure_command));
+    section.blocks.push_back(missing_input("--measure F", k_measure_command));
     return section;
   }
   // Counts depend on the code, not on the computer: the first file is shown; all must agree.
@@ -66,7 +66,7 @@ Section loops_section(const ReportSources& sources) {
   }
   section.blocks.push_back(Sentence{std::to_string(reached) + " of " + std::to_string(loops) +
                                     " loops were driven to their declared maximum (" +
-                                    about(measure) + ")."});
+                                    conditions_of(measure) + ")."});
   section.blocks.push_back(table);
   return section;
 }
@@ -74,11 +74,11 @@ Section loops_section(const ReportSources& sources) {
 Section costs_section(const ReportSources& sources) {
   Section section{"costs", "Kernel costs and their envelope", {}};
   if (sources.measures.empty()) {
-    section.blocks.push_back(not_given("--measure F", k_measure_command));
+    section.blocks.push_back(missing_input("--measure F", k_measure_command));
     return section;
   }
   for (const JsonView& measure : sources.measures) {
-    Table table{"In " + unit_of(measure) + " a call: " + about(measure) +
+    Table table{"In " + unit_of(measure) + " a call: " + conditions_of(measure) +
                     ". The envelope is fitted on one half of the inputs and judged on the other.",
                 {{"Kernel"},
                  {"Bound", NumberKind::bound, true},
@@ -125,11 +125,11 @@ Section interference_section(const ReportSources& sources) {
       table.rows.push_back({{item.text("kernel")},
                             {item.text("enemy")},
                             {us_text(item.number("factor"))},
-                            {about(measure)}});
+                            {conditions_of(measure)}});
     }
   }
   if (table.rows.empty()) {
-    section.blocks.push_back(not_given("--measure F", "glint budget measure, beside enemies,"));
+    section.blocks.push_back(missing_input("--measure F", "glint budget measure, beside enemies,"));
   } else {
     section.blocks.push_back(table);
   }
@@ -139,7 +139,7 @@ Section interference_section(const ReportSources& sources) {
 Section footprint_section(const ReportSources& sources) {
   Section section{"footprint", "Footprint", {}};
   if (!sources.footprint) {
-    section.blocks.push_back(not_given("--footprint F", "the footprint check of the tests"));
+    section.blocks.push_back(missing_input("--footprint F", "the footprint check of the tests"));
     return section;
   }
   Table table{

@@ -28,9 +28,9 @@ void add_series(const std::string& what, const std::vector<double>& series,
          {estimate.applicable ? us_text(estimate.level) : "not applicable"},
          {estimate.applicable ? us_text(estimate.low) + " to " + us_text(estimate.high) : "-"},
          {estimate.applicable ? "fitted on " + std::to_string(estimate.fitted) + ", verified on " +
-                                    std::to_string(estimate.judged) + " extremes; shape " +
+                                    std::to_string(estimate.verified) + " extremes; shape " +
                                     us_text(estimate.distribution.shape)
-                              : "not applicable: " + estimate.why}});
+                              : "not applicable: " + estimate.reason}});
     // Tests of the assumptions are of the series, and therefore the same for both methods.
     const std::size_t first = number == 1 ? 0 : std::min<std::size_t>(4, estimate.tests.size());
     for (std::size_t i = first; i < estimate.tests.size(); ++i) {
@@ -55,7 +55,8 @@ void add_series(const std::string& what, const std::vector<double>& series,
 Section estimates_section(const ReportSources& sources) {
   Section section{"estimates", "Estimates of what was not seen yet", {}};
   if (!sources.trace) {
-    section.blocks.push_back(not_given("--run DIR", "glint run --out DIR --json DIR/summary.json"));
+    section.blocks.push_back(
+        missing_input("--run DIR", "glint run --out DIR --json DIR/summary.json"));
     return section;
   }
   const ExtremeSettings settings;
@@ -71,7 +72,7 @@ Section estimates_section(const ReportSources& sources) {
                 {"Grounds"}},
                {}};
   Table tests{
-      "Each assumption is tested twice at level " + p_text(settings.level) +
+      "Each assumption is tested twice at level " + p_text(settings.significance) +
           "; one refusal is enough. The fit is made on the first half of the run and judged "
           "on the second.",
       {{"Series"}, {"Method"}, {"Test"}, {"Assumption"}, {"p", NumberKind::none, true}, {"Result"}},

@@ -60,8 +60,8 @@ GanttStrip run_strip(const TraceFile& trace, std::size_t group, const Activation
 Section schedule_section(const ReportSources& sources) {
   Section section{"schedule", "The plan, and what a run made of it", {}};
   if (!sources.check)
-    section.blocks.push_back(not_given("--check F", "glint budget check --json F"));
-  if (!sources.trace) section.blocks.push_back(not_given("--run DIR", k_run_command));
+    section.blocks.push_back(missing_input("--check F", "glint budget check --json F"));
+  if (!sources.trace) section.blocks.push_back(missing_input("--run DIR", k_run_command));
   std::vector<std::string> groups;
   if (sources.trace) {
     for (const TraceGroup& group : sources.trace->groups) groups.push_back(group.name);
@@ -100,7 +100,7 @@ Section schedule_section(const ReportSources& sources) {
 Section nodes_section(const ReportSources& sources) {
   Section section{"nodes", "Each node's times", {}};
   if (!sources.trace) {
-    section.blocks.push_back(not_given("--run DIR", k_run_command));
+    section.blocks.push_back(missing_input("--run DIR", k_run_command));
     return section;
   }
   Table table{"In \u00b5s, of the run. Preemption by other threads is in what is observed.",
@@ -141,11 +141,11 @@ Section nodes_section(const ReportSources& sources) {
 Section worst_frames_section(const ReportSources& sources, std::size_t frames) {
   Section section{"worst-frames", "The worst frames, and how to see them again", {}};
   if (!sources.trace || sources.run.groups.empty()) {
-    section.blocks.push_back(not_given("--run DIR", k_run_command));
+    section.blocks.push_back(missing_input("--run DIR", k_run_command));
     return section;
   }
   std::vector<const Activation*> order;
-  for (const Activation& a : sources.run.groups[k_frames_of_trace]) order.push_back(&a);
+  for (const Activation& a : sources.run.groups[k_frame_group_of_trace]) order.push_back(&a);
   std::sort(order.begin(), order.end(), [](const Activation* a, const Activation* b) {
     return a->response_us() > b->response_us();
   });

@@ -59,7 +59,7 @@ Table frame_to_can_observed(const JsonView& times) {
 Section chains_section(const ReportSources& sources) {
   Section section{"chains", "Chains, stage by stage", {}};
   if (!sources.check) {
-    section.blocks.push_back(not_given("--check F", k_check_command));
+    section.blocks.push_back(missing_input("--check F", k_check_command));
   } else {
     Table table{
         "In \u00b5s. What the analysis computes, what a data sheet or the cell declares and what "
@@ -117,7 +117,7 @@ Section chains_section(const ReportSources& sources) {
 Section slack_section(const ReportSources& sources) {
   Section section{"slack", "Slack, and what may grow", {}};
   if (!sources.check) {
-    section.blocks.push_back(not_given("--check F", k_check_command));
+    section.blocks.push_back(missing_input("--check F", k_check_command));
     return section;
   }
   const JsonView& check = *sources.check;
@@ -173,7 +173,7 @@ Section slack_section(const ReportSources& sources) {
 Section groups_section(const ReportSources& sources) {
   Section section{"groups", "Response times", {}};
   if (!sources.check) {
-    section.blocks.push_back(not_given("--check F", k_check_command));
+    section.blocks.push_back(missing_input("--check F", k_check_command));
     return section;
   }
   Table table{
@@ -225,7 +225,7 @@ Section groups_section(const ReportSources& sources) {
 Section can_section(const ReportSources& sources) {
   Section section{"can", "The bus", {}};
   if (!sources.check) {
-    section.blocks.push_back(not_given("--check F", k_check_command));
+    section.blocks.push_back(missing_input("--check F", k_check_command));
     return section;
   }
   Table table{"Queueing to the end of transmission, in \u00b5s, with the bus's foreign frames.",

@@ -148,7 +148,7 @@ void judge(const ReportSources& sources, Document& document) {
     document.verdict = Verdict::fails;
     document.verdict_text = "At least one bound does not meet its deadline or its margin.";
   } else if (voids > 0) {
-    document.verdict = Verdict::void_bound;
+    document.verdict = Verdict::invalid_bound;
     document.verdict_text =
         "The computed bounds meet their deadlines, but reality contradicts what they stand on. "
         "Until "
@@ -210,7 +210,7 @@ Section reading_section(const ReportSources& sources) {
   return section;
 }
 
-Section spoiled_section(const ReportSources& sources) {
+Section timing_faults_section(const ReportSources& sources) {
   Section section{"spoiled", "Best effort, and what is void", {}};
   if (sources.summary) {
     const std::vector<std::string> reasons = sources.best_effort();
@@ -227,7 +227,8 @@ Section spoiled_section(const ReportSources& sources) {
       section.blocks.push_back(table);
     }
   } else {
-    section.blocks.push_back(not_given("--run DIR", "glint run --out DIR --json DIR/summary.json"));
+    section.blocks.push_back(
+        missing_input("--run DIR", "glint run --out DIR --json DIR/summary.json"));
   }
   Table table{"", {{"Void"}, {"Why"}}, {}};
   if (sources.check) {

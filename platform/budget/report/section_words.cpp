@@ -42,7 +42,7 @@ std::string node_label(const JsonView& node, const std::vector<JsonView>& all) {
   return copies < 2 ? name : name + '#' + number_text(node.number_or("copy", 0), 0);
 }
 
-Sentence not_given(const std::string& option, const std::string& command) {
+Sentence missing_input(const std::string& option, const std::string& command) {
   return {"Not given: pass `" + option + "`, made by `" + command + "`.", Tone::faint};
 }
 

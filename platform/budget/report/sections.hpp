@@ -23,7 +23,7 @@ void judge(const ReportSources& sources, Document& document);
 [[nodiscard]] Section estimates_section(const ReportSources& sources);
 [[nodiscard]] Section footprint_section(const ReportSources& sources);
 [[nodiscard]] Section worst_frames_section(const ReportSources& sources, std::size_t frames);
-[[nodiscard]] Section spoiled_section(const ReportSources& sources);
+[[nodiscard]] Section timing_faults_section(const ReportSources& sources);
 [[nodiscard]] Section inputs_section(const ReportSources& sources);
 
 // Text shared by the sections.
@@ -35,6 +35,6 @@ void judge(const ReportSources& sources, Document& document);
 [[nodiscard]] Tone tone_of_left(double percent);
 // Name of a node of check.json, with its copy number if its group has several copies.
 [[nodiscard]] std::string node_label(const JsonView& node, const std::vector<JsonView>& all);
-[[nodiscard]] Sentence not_given(const std::string& option, const std::string& command);
+[[nodiscard]] Sentence missing_input(const std::string& option, const std::string& command);
 
 }  // namespace glint

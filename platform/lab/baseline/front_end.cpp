@@ -6,8 +6,8 @@
 namespace glint {
 namespace {
 
-constexpr double k_seed_threshold = 250;  // of 8 bits, as published
-constexpr double k_outside = -16;         // position outside every frame: remap writes black
+constexpr double k_baseline_threshold = 250;  // of 8 bits, as published
+constexpr double k_outside_px = -16;          // position outside every frame: remap writes black
 
 // Pixels of a halved binary image are 0, 1/4, 1/2, 3/4 or 1 of white; those from 1/2 on count. One
 // threshold, one pass.
@@ -30,19 +30,19 @@ cv::Ptr<cv::SimpleBlobDetector> make_detector(double max_area_px) {
 }
 
 // Matrix view of the frame's pixels, without a copy.
-cv::Mat borrowed(const void* pixels, const cv::Size& size, int type) {
+cv::Mat view_of(const void* pixels, const cv::Size& size, int type) {
   return {size, type, const_cast<void*>(pixels)};
 }
 
 }  // namespace
 
-SeedFrontEnd::SeedFrontEnd(const Camera& camera, const SeedSettings& settings)
+BaselineFrontEnd::BaselineFrontEnd(const Camera& camera, const SeedSettings& settings)
     : model_(camera.model),
       threshold_16_(camera.threshold),
       size_(camera.model.width, camera.model.height),
       undistorted_(size_, CV_8U),
       detector_(make_detector(settings.max_blob_area_px)) {
-  if (camera.reflectivity_bits == 16) scale_to_8_bits_ = k_seed_threshold / camera.threshold;
+  if (camera.reflectivity_bits == 16) scale_to_8_bits_ = k_baseline_threshold / camera.threshold;
   cv::Mat x(size_, CV_32F), y(size_, CV_32F);
   for (int row = 0; row < size_.height; ++row) {
     for (int column = 0; column < size_.width; ++column) {
@@ -50,19 +50,19 @@ SeedFrontEnd::SeedFrontEnd(const Camera& camera, const SeedSettings& settings)
                         (row + 0.5 - camera.model.cy) / camera.model.fy, 1);
       const Result<Vector2> raw = project(camera.model, ray);
       // OpenCV's pixel centres are at integers.
-      x.at<float>(row, column) = static_cast<float>(raw ? raw.value.x() - 0.5 : k_outside);
-      y.at<float>(row, column) = static_cast<float>(raw ? raw.value.y() - 0.5 : k_outside);
+      x.at<float>(row, column) = static_cast<float>(raw ? raw.value.x() - 0.5 : k_outside_px);
+      y.at<float>(row, column) = static_cast<float>(raw ? raw.value.y() - 0.5 : k_outside_px);
     }
   }
   cv::convertMaps(x, y, map_, map_fraction_, CV_16SC2);
 }
 
-cv::Mat SeedFrontEnd::raw(const Frame& frame) const {
-  return frame.reflectivity_8.empty() ? borrowed(frame.reflectivity_16.pixels, size_, CV_16U)
-                                      : borrowed(frame.reflectivity_8.pixels, size_, CV_8U);
+cv::Mat BaselineFrontEnd::raw(const Frame& frame) const {
+  return frame.reflectivity_8.empty() ? view_of(frame.reflectivity_16.pixels, size_, CV_16U)
+                                      : view_of(frame.reflectivity_8.pixels, size_, CV_8U);
 }
 
-void SeedFrontEnd::undistort(const Frame& frame) {
+void BaselineFrontEnd::undistort(const Frame& frame) {
   cv::Mat source = raw(frame);
   if (source.depth() == CV_16U) {
     // Half the cost of a 16-bit remap, and no loss: the next stage is binary.
@@ -72,7 +72,7 @@ void SeedFrontEnd::undistort(const Frame& frame) {
   cv::remap(source, undistorted_, map_, map_fraction_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
 }
 
-void SeedFrontEnd::undistort_roi(const Frame& frame, const cv::Rect& roi) {
+void BaselineFrontEnd::undistort_roi(const Frame& frame, const cv::Rect& roi) {
   const cv::Rect area = roi & whole();
   if (area.empty()) return;
   const cv::Mat source = raw(frame);
@@ -87,7 +87,7 @@ void SeedFrontEnd::undistort_roi(const Frame& frame, const cv::Rect& roi) {
   }
 }
 
-void SeedFrontEnd::threshold_raw(const Frame& frame, const cv::Rect& roi) {
+void BaselineFrontEnd::threshold_raw(const Frame& frame, const cv::Rect& roi) {
   // The lens mapping is monotonic enough that the ROI's corners and side midpoints bound its
   // pixels.
   cv::Rect area = whole();
@@ -109,14 +109,14 @@ void SeedFrontEnd::threshold_raw(const Frame& frame, const cv::Rect& roi) {
   if (roi_.empty()) {
     binary_.release();
   } else if (source.depth() == CV_8U) {
-    cv::threshold(source(roi_), binary_, k_seed_threshold, 255, cv::THRESH_BINARY);
+    cv::threshold(source(roi_), binary_, k_baseline_threshold, 255, cv::THRESH_BINARY);
   } else {
     cv::compare(source(roi_), threshold_16_, binary_, cv::CMP_GT);
   }
 }
 
-void SeedFrontEnd::undistort_blobs() {
-  for (SeedBlob& blob : blobs_) {
+void BaselineFrontEnd::undistort_blobs() {
+  for (BaselineBlob& blob : blobs_) {
     const Result<Vector3> ray = unproject(model_, blob.centre_px);
     if (!ray || !(ray.value.z() > 0)) continue;
     blob.centre_px = {model_.fx * ray.value.x() / ray.value.z() + model_.cx,
@@ -124,16 +124,16 @@ void SeedFrontEnd::undistort_blobs() {
   }
 }
 
-void SeedFrontEnd::threshold(const cv::Rect& roi) {
+void BaselineFrontEnd::threshold(const cv::Rect& roi) {
   roi_ = roi & whole();
   if (roi_.empty()) {
     binary_.release();
     return;
   }
-  cv::threshold(undistorted_(roi_), binary_, k_seed_threshold, 255, cv::THRESH_BINARY);
+  cv::threshold(undistorted_(roi_), binary_, k_baseline_threshold, 255, cv::THRESH_BINARY);
 }
 
-void SeedFrontEnd::halve() {
+void BaselineFrontEnd::halve() {
   const cv::Size half((roi_.width + 1) / 2, (roi_.height + 1) / 2);
   if (roi_.width < 2 || roi_.height < 2) {
     half_.release();
@@ -142,21 +142,21 @@ void SeedFrontEnd::halve() {
   }
 }
 
-void SeedFrontEnd::detect() {
+void BaselineFrontEnd::detect() {
   blobs_.clear();
   if (half_.empty()) return;
   detector_->detect(half_, key_points_);
   const double x_scale = static_cast<double>(roi_.width) / half_.cols;
   const double y_scale = static_cast<double>(roi_.height) / half_.rows;
   for (const cv::KeyPoint& point : key_points_) {
-    SeedBlob blob;
+    BaselineBlob blob;
     blob.centre_px = {roi_.x + (point.pt.x + 0.5) * x_scale, roi_.y + (point.pt.y + 0.5) * y_scale};
     blob.radius_px = std::max(0.5 * point.size * x_scale, 1.0);
     blobs_.push_back(blob);
   }
 }
 
-Vector2 SeedFrontEnd::raw_pixel(const Vector2& undistorted) const {
+Vector2 BaselineFrontEnd::raw_pixel(const Vector2& undistorted) const {
   const int x = std::clamp(static_cast<int>(undistorted.x()), 0, size_.width - 1);
   const int y = std::clamp(static_cast<int>(undistorted.y()), 0, size_.height - 1);
   const auto raw = map_.at<cv::Vec2s>(y, x);

@@ -17,14 +17,14 @@
 
 namespace glint {
 
-struct SeedBlob {
+struct BaselineBlob {
   Vector2 centre_px;     // undistorted frame, pixel centres at integer + 0.5
   double radius_px = 0;  // full-size pixels
 };
 
-class SeedFrontEnd {
+class BaselineFrontEnd {
  public:
-  SeedFrontEnd(const Camera& camera, const SeedSettings& settings);
+  BaselineFrontEnd(const Camera& camera, const SeedSettings& settings);
 
   // The four stages in order; each reads the result of the previous one. `roi` in undistorted
   // pixels.
@@ -41,7 +41,7 @@ class SeedFrontEnd {
   // Call after a raw search: converts the blobs' centres to undistorted pixels.
   void undistort_blobs();
 
-  [[nodiscard]] std::span<const SeedBlob> blobs() const { return blobs_; }
+  [[nodiscard]] std::span<const BaselineBlob> blobs() const { return blobs_; }
   [[nodiscard]] cv::Rect whole() const { return {0, 0, size_.width, size_.height}; }
   // Returns the raw frame's pixel of an undistorted pixel.
   [[nodiscard]] Vector2 raw_pixel(const Vector2& undistorted) const;
@@ -52,13 +52,13 @@ class SeedFrontEnd {
   CameraModel model_;
   double threshold_16_ = 0;
   cv::Size size_;
-  double scale_to_8_bits_ = 1;  // maps the 16-bit threshold to k_seed_threshold
+  double scale_to_8_bits_ = 1;  // maps the 16-bit threshold to k_baseline_threshold
   cv::Mat map_, map_fraction_;
   cv::Mat eight_bits_, part_, undistorted_, binary_, half_;
   cv::Rect roi_;
   cv::Ptr<cv::SimpleBlobDetector> detector_;
   std::vector<cv::KeyPoint> key_points_;
-  std::vector<SeedBlob> blobs_;
+  std::vector<BaselineBlob> blobs_;
 };
 
 }  // namespace glint

@@ -11,8 +11,9 @@ namespace {
 cv::Vec3d cv_vector(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 // Rigid fit by SVD (Kabsch): R = U diag(1, 1, det(U V^T)) V^T of the centred cross-covariance.
-SeedMatch fitted(std::span<const Vector3> points_m, const Tool& tool, const SeedMatch& labels) {
-  SeedMatch match = labels;
+BaselineMatch fitted(std::span<const Vector3> points_m, const Tool& tool,
+                     const BaselineMatch& labels) {
+  BaselineMatch match = labels;
   cv::Vec3d mean_model, mean_point;
   for (int i = 0; i < tool.marker_count; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -54,7 +55,7 @@ SeedMatch fitted(std::span<const Vector3> points_m, const Tool& tool, const Seed
 class Search {
  public:
   Search(std::span<const Vector3> points_m, const Tool& tool, const SeedSettings& settings)
-      : points_(points_m.first(std::min<std::size_t>(points_m.size(), k_seed_points_max))),
+      : points_(points_m.first(std::min<std::size_t>(points_m.size(), k_baseline_points_max))),
         tool_(tool),
         settings_(settings),
         distance_(points_.size() * points_.size()) {
@@ -65,7 +66,7 @@ class Search {
     best_.rms_m = settings.max_rms_m;
   }
 
-  SeedMatch run() {
+  BaselineMatch run() {
     grow(0);
     if (best_.count == 0) {
       best_.reason = static_cast<int>(points_.size()) < settings_.min_markers
@@ -83,7 +84,7 @@ class Search {
     if (possible < std::max(settings_.min_markers, best_.count)) return;
     if (marker == tool_.marker_count) {
       found_distances_ = true;
-      const SeedMatch match = fitted(points_, tool_, labels_);
+      const BaselineMatch match = fitted(points_, tool_, labels_);
       const bool better = match.count > best_.count || match.rms_m < best_.rms_m;
       if (better && match.rms_m < settings_.max_rms_m) {
         best_ = match;
@@ -112,9 +113,9 @@ class Search {
       if (taken == point) return false;
       const double measured = distance_[static_cast<std::size_t>(taken) * points_.size() +
                                         static_cast<std::size_t>(point)];
-      const double wanted =
+      const double expected_m =
           tool_.distance_m[static_cast<std::size_t>(other)][static_cast<std::size_t>(marker)];
-      if (!(std::abs(measured - wanted) < settings_.delta_m)) return false;
+      if (!(std::abs(measured - expected_m) < settings_.delta_m)) return false;
     }
     return true;
   }
@@ -124,14 +125,14 @@ class Search {
   const SeedSettings& settings_;
   int hypotheses_ = 0;
   std::vector<double> distance_;
-  SeedMatch labels_, best_;
+  BaselineMatch labels_, best_;
   bool found_distances_ = false;
 };
 
 }  // namespace
 
-SeedMatch match_tool(std::span<const Vector3> points_m, const Tool& tool,
-                     const SeedSettings& settings) {
+BaselineMatch match_tool(std::span<const Vector3> points_m, const Tool& tool,
+                         const SeedSettings& settings) {
   return Search(points_m, tool, settings).run();
 }
 

@@ -13,7 +13,7 @@
 
 namespace glint {
 
-struct SeedMatch {
+struct BaselineMatch {
   Reason reason = Reason::no_labeling;
   std::array<int, k_markers_per_tool_max> point{};  // index into the points, -1 where unseen
   int count = 0;
@@ -22,10 +22,10 @@ struct SeedMatch {
   Pose T_camera_tool;
 };
 
-inline constexpr int k_seed_points_max = 64;  // later points are ignored
+inline constexpr int k_baseline_points_max = 64;  // later points are ignored
 
 // points_m: marker centres in the camera frame.
-[[nodiscard]] SeedMatch match_tool(std::span<const Vector3> points_m, const Tool& tool,
-                                   const SeedSettings& settings);
+[[nodiscard]] BaselineMatch match_tool(std::span<const Vector3> points_m, const Tool& tool,
+                                       const SeedSettings& settings);
 
 }  // namespace glint

@@ -6,11 +6,11 @@ namespace glint {
 namespace {
 
 // As published: constant velocity from the last two poses, and no covariance.
-FollowedTool followed_from(const Track& before, const StampedPose& now, ReferenceFrame base,
-                           const Vector3& middle, Duration velocity_gap_max) {
-  FollowedTool followed;
+TrackedTool followed_from(const Track& before, const TimedPose& now, ReferenceFrame base,
+                          const Vector3& middle, Duration velocity_gap_max) {
+  TrackedTool followed;
   followed.reason = Reason::none;
-  followed.stands = true;  // the publication flags no pose as ambiguous
+  followed.is_publishable = true;  // the publication flags no pose as ambiguous
   followed.base = base;
   followed.noise = {0, 0};
   followed.estimate.time = now.time;
@@ -28,14 +28,14 @@ FollowedTool followed_from(const Track& before, const StampedPose& now, Referenc
 
 }  // namespace
 
-SeedMethod::SeedMethod(const Cell& cell) : seed_(cell.camera, cell.tools.items[0]) {
+BaselineMethod::BaselineMethod(const Cell& cell) : seed_(cell.camera, cell.tools.items[0]) {
   ToolSet set = cell.tools;
   set.count = 1;
   tools_.set(set, 1, 0);
   track_.settings.lost_after = cell.lost_after;
 }
 
-const Estimates& SeedMethod::process(const ArrivedFrame& arrived) {
+const Estimates& BaselineMethod::process(const ArrivedFrame& arrived) {
   const FrameStamp stamp = overrun_stamp(arrived.frame);
   FrameVerdict verdict;
   check_(stamp, verdict);
@@ -44,7 +44,7 @@ const Estimates& SeedMethod::process(const ArrivedFrame& arrived) {
   fitted = FittedTool{};
   fitted.reason = verdict.reason;
   if (verdict.usable()) {
-    const SeedResult result = seed_.process(arrived.frame, arrived.head);
+    const BaselineResult result = seed_.process(arrived.frame, arrived.head);
     fitted.reason = result.reason;
     fitted.rms_m = result.rms_m;
     fitted.T_camera_tool = result.T_camera_tool;
@@ -52,7 +52,7 @@ const Estimates& SeedMethod::process(const ArrivedFrame& arrived) {
     fitted.marker_mask = static_cast<std::uint8_t>((1u << result.marker_count) - 1u);
   }
   last_ = estimates_;
-  FollowedTool& followed = followed_[0].items[0];
+  TrackedTool& followed = followed_[0].items[0];
   followed.reason = fitted.reason;
   if (fitted.reason == Reason::none) {
     const HeadPose& head = arrived.head;

@@ -11,21 +11,21 @@
 
 namespace glint {
 
-class SeedMethod final : public FrameMethod {
+class BaselineMethod final : public FrameMethod {
  public:
-  explicit SeedMethod(const Cell& cell);
+  explicit BaselineMethod(const Cell& cell);
 
   // Not for real time: OpenCV allocates.
   [[nodiscard]] const Estimates& process(const ArrivedFrame& arrived) override;
 
  private:
-  SeedTracker seed_;
+  BaselineTracker seed_;
   CheckFrame check_;
   TrackTools track_;
   graph::Latest<ToolSet> tools_;
-  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  graph::Parts<FittedTools, k_tool_partitions> fitted_;
   Anchor anchor_;  // without a reference body, as published
-  graph::Parts<FollowedTools, k_tool_slices> followed_;
+  graph::Parts<FollowedTools, k_tool_partitions> followed_;
   Estimates last_, estimates_;
 };
 

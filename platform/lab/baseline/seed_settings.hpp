@@ -8,14 +8,14 @@
 namespace glint {
 
 // Where a frame is undistorted. The last two are not published; they show OpenCV's best speed.
-enum class SeedUndistortion : std::uint8_t {
+enum class BaselineUndistortion : std::uint8_t {
   whole_frame,  // as published, with or without an ROI
   roi,          // remaps the ROI alone
   points,       // thresholds the raw ROI, undistorts only the blobs' centres
 };
 
 struct SeedSettings {
-  SeedUndistortion undistortion = SeedUndistortion::whole_frame;
+  BaselineUndistortion undistortion = BaselineUndistortion::whole_frame;
   // Two distances are equal if they differ by less. Range noise of 1.5 mm at both markers gives a
   // distance noise of 2.1 mm (1 sigma). Above 3 sigma of that; below the 8 mm by which the sides of
   // a well-made tool differ.

@@ -10,11 +10,12 @@ constexpr double k_rim_px = 1.5;  // beyond the bright pixels: a saturated centr
 
 }  // namespace
 
-SeedTracker::SeedTracker(const Camera& camera, const Tool& tool, const SeedSettings& settings)
+BaselineTracker::BaselineTracker(const Camera& camera, const Tool& tool,
+                                 const SeedSettings& settings)
     : camera_(camera), tool_(tool), settings_(settings), front_end_(camera, settings) {}
 
-SeedResult SeedTracker::process(const Frame& frame, const HeadPose& head) {
-  SeedResult result;
+BaselineResult BaselineTracker::process(const Frame& frame, const HeadPose& head) {
+  BaselineResult result;
   if (frame.width() != camera_.model.width || frame.height() != camera_.model.height ||
       frame.depth.empty()) {
     result.reason = Reason::frame_invalid;
@@ -24,10 +25,10 @@ SeedResult SeedTracker::process(const Frame& frame, const HeadPose& head) {
     result.reason = Reason::frame_late;
     return result;
   }
-  if (settings_.undistortion == SeedUndistortion::whole_frame) front_end_.undistort(frame);
+  if (settings_.undistortion == BaselineUndistortion::whole_frame) front_end_.undistort(frame);
   const cv::Rect roi = predicted_roi(frame, head);
   result.from_roi = !roi.empty();
-  SeedMatch found;
+  BaselineMatch found;
   if (result.from_roi) {
     search(frame, roi);
     found = match(frame);
@@ -52,7 +53,7 @@ SeedResult SeedTracker::process(const Frame& frame, const HeadPose& head) {
   return result;
 }
 
-Result<Pose> SeedTracker::pose_at(Time time) const {
+Result<Pose> BaselineTracker::pose_at(Time time) const {
   if (poses_ == 0) return {{}, Reason::no_frame_yet};
   if (time - newest_.time > settings_.lost_after) return {{}, Reason::too_old};
   if (poses_ == 1) return {newest_.pose};
@@ -60,7 +61,7 @@ Result<Pose> SeedTracker::pose_at(Time time) const {
                               : extrapolate(previous_, newest_, time, settings_.horizon)};
 }
 
-std::span<const SeedBlob> SeedTracker::front_end(const Frame& frame) {
+std::span<const BaselineBlob> BaselineTracker::front_end(const Frame& frame) {
   front_end_.undistort(frame);
   front_end_.threshold(front_end_.whole());
   front_end_.halve();
@@ -68,23 +69,23 @@ std::span<const SeedBlob> SeedTracker::front_end(const Frame& frame) {
   return front_end_.blobs();
 }
 
-void SeedTracker::search(const Frame& frame, const cv::Rect& roi) {
-  if (settings_.undistortion == SeedUndistortion::points) {
+void BaselineTracker::search(const Frame& frame, const cv::Rect& roi) {
+  if (settings_.undistortion == BaselineUndistortion::points) {
     front_end_.threshold_raw(frame, roi);
   } else {
-    if (settings_.undistortion == SeedUndistortion::roi) front_end_.undistort_roi(frame, roi);
+    if (settings_.undistortion == BaselineUndistortion::roi) front_end_.undistort_roi(frame, roi);
     front_end_.threshold(roi);
   }
   front_end_.halve();
   front_end_.detect();
-  if (settings_.undistortion == SeedUndistortion::points) front_end_.undistort_blobs();
+  if (settings_.undistortion == BaselineUndistortion::points) front_end_.undistort_blobs();
 }
 
 // m = (Z x / f, Z y / f, Z); the sphere's centre is a radius further along the ray.
-SeedMatch SeedTracker::match(const Frame& frame) {
+BaselineMatch BaselineTracker::match(const Frame& frame) {
   points_m_.clear();
   const CameraModel& model = camera_.model;
-  for (const SeedBlob& blob : front_end_.blobs()) {
+  for (const BaselineBlob& blob : front_end_.blobs()) {
     const double depth = blob_depth(frame, blob);
     if (!(depth > 0)) continue;
     const Vector3 towards((blob.centre_px.x() - model.cx) / model.fx,
@@ -96,7 +97,7 @@ SeedMatch SeedTracker::match(const Frame& frame) {
   return match_tool(points_m_, tool_, settings_);
 }
 
-cv::Rect SeedTracker::predicted_roi(const Frame& frame, const HeadPose& head) const {
+cv::Rect BaselineTracker::predicted_roi(const Frame& frame, const HeadPose& head) const {
   if (!settings_.use_roi || poses_ == 0 || in_world_ != head.valid) return {};
   const Result<Pose> predicted = pose_at(frame.mid_exposure);
   if (!predicted) return {};
@@ -126,7 +127,7 @@ cv::Rect SeedTracker::predicted_roi(const Frame& frame, const HeadPose& head) co
   return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
 }
 
-double SeedTracker::blob_depth(const Frame& frame, const SeedBlob& blob) {
+double BaselineTracker::blob_depth(const Frame& frame, const BaselineBlob& blob) {
   const Vector2 raw = front_end_.raw_pixel(blob.centre_px);
   for (const double radius : {0.5 * blob.radius_px, blob.radius_px, blob.radius_px + k_rim_px}) {
     const double depth = median_depth(frame, raw, radius);
@@ -135,7 +136,7 @@ double SeedTracker::blob_depth(const Frame& frame, const SeedBlob& blob) {
   return 0;
 }
 
-double SeedTracker::median_depth(const Frame& frame, const Vector2& raw_px, double radius_px) {
+double BaselineTracker::median_depth(const Frame& frame, const Vector2& raw_px, double radius_px) {
   depths_.clear();
   const int x0 = std::max(0, static_cast<int>(raw_px.x() - radius_px));
   const int y0 = std::max(0, static_cast<int>(raw_px.y() - radius_px));

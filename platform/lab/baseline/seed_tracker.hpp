@@ -20,7 +20,7 @@
 
 namespace glint {
 
-struct SeedResult {
+struct BaselineResult {
   Reason reason = Reason::no_frame_yet;
   Pose T_camera_tool;  // valid if reason is none
   int marker_count = 0;
@@ -28,13 +28,13 @@ struct SeedResult {
   bool from_roi = false;  // found in the predicted ROI
 };
 
-class SeedTracker {
+class BaselineTracker {
  public:
   // Requires a prepared tool.
-  SeedTracker(const Camera& camera, const Tool& tool, const SeedSettings& settings = {});
+  BaselineTracker(const Camera& camera, const Tool& tool, const SeedSettings& settings = {});
 
   // Call in order of the time stamps. Rejects a frame that is not later than the newest pose.
-  SeedResult process(const Frame& frame, const HeadPose& head);
+  BaselineResult process(const Frame& frame, const HeadPose& head);
 
   // Returns T_base_tool by constant velocity and SLERP. The base is the world if the newest pose
   // had a valid head pose, else the camera. Returns Reason::too_old beyond
@@ -42,23 +42,23 @@ class SeedTracker {
   [[nodiscard]] Result<Pose> pose_at(Time time) const;
 
   // Undistorts, thresholds, halves and detects on the whole frame; for the benchmark's timing.
-  std::span<const SeedBlob> front_end(const Frame& frame);
+  std::span<const BaselineBlob> front_end(const Frame& frame);
 
  private:
   void search(const Frame& frame, const cv::Rect& roi);
-  SeedMatch match(const Frame& frame);
+  BaselineMatch match(const Frame& frame);
   [[nodiscard]] cv::Rect predicted_roi(const Frame& frame, const HeadPose& head) const;
-  [[nodiscard]] double blob_depth(const Frame& frame, const SeedBlob& blob);
+  [[nodiscard]] double blob_depth(const Frame& frame, const BaselineBlob& blob);
   [[nodiscard]] double median_depth(const Frame& frame, const Vector2& raw_px, double radius_px);
 
   Camera camera_;
   Tool tool_;
   SeedSettings settings_;
-  SeedFrontEnd front_end_;
+  BaselineFrontEnd front_end_;
   std::vector<Vector3> points_m_;
   std::vector<std::uint16_t> depths_;
-  StampedPose previous_, newest_;  // T_base_tool
-  int poses_ = 0;                  // number of valid poses of the two: 0, 1 or 2
+  TimedPose previous_, newest_;  // T_base_tool
+  int poses_ = 0;                // number of valid poses of the two: 0, 1 or 2
   bool in_world_ = false;
 };
 

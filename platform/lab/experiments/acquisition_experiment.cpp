@@ -24,7 +24,8 @@ constexpr int k_findable_markers = 4;  // without a prediction three of many str
 
 // No covariance is asked for: every 20 mm count.
 bool far_off(const Tool& tool, const Pose& seen, const Pose& truth) {
-  return is_gross({(seen * tool.tip_m - truth * tool.tip_m).norm(), turned_by(seen, truth)});
+  return is_gross(
+      {(seen * tool.tip_m - truth * tool.tip_m).norm(), rotation_between_rad(seen, truth)});
 }
 
 void add_frame(const Track& track, const Tool& tool, const Pose& truth, int visible, double time_s,
@@ -32,15 +33,15 @@ void add_frame(const Track& track, const Tool& tool, const Pose& truth, int visi
   const bool trackable = visible >= k_trackable_markers, findable = visible >= k_findable_markers;
   if (findable && !tally.visible) visible_since_s = time_s;
   tally.visible = tally.visible || findable;
-  if (track.seen_now && !tally.found) {
+  if (track.measured_now && !tally.found) {
     tally.found = true;
     tally.found_s = tally.visible ? time_s - visible_since_s : 0;
   }
-  if (trackable && !track.seen_now) ++tally.missed[static_cast<std::size_t>(track.reason)];
+  if (trackable && !track.measured_now) ++tally.missed[static_cast<std::size_t>(track.reason)];
   if (!tally.found) return;
   tally.trackable += trackable ? 1 : 0;
-  tally.fresh += trackable && track.seen_now ? 1 : 0;
-  tally.gross += track.seen_now && far_off(tool, track.T_camera_tool, truth) ? 1 : 0;
+  tally.fresh += trackable && track.measured_now ? 1 : 0;
+  tally.gross += track.measured_now && far_off(tool, track.T_camera_tool, truth) ? 1 : 0;
 }
 
 SpotSettings discs(int count, double radius_min_px, double radius_max_px) {

@@ -13,7 +13,7 @@ constexpr int k_rounds = 5;  // the inlier set is constant after two or three
 constexpr double k_medians_kept = 3;
 
 // Marks as inliers the values within k_medians_kept times the median distance.
-std::vector<bool> near_ones(const std::vector<double>& distances) {
+std::vector<bool> inliers_of(const std::vector<double>& distances) {
   const double limit = k_medians_kept * median_of(distances);
   std::vector<bool> kept;
   for (const double distance : distances) kept.push_back(distance <= limit);
@@ -54,7 +54,7 @@ Pose align_worlds(std::span<const PosePair> samples) {
     std::vector<double> distances;
     for (const Quaternion& rotation : rotations)
       distances.push_back(aligned.rotation.angularDistance(rotation));
-    aligned.rotation = mean_rotation(rotations, near_ones(distances));
+    aligned.rotation = mean_rotation(rotations, inliers_of(distances));
   }
 
   std::vector<Vector3> offsets;
@@ -66,7 +66,7 @@ Pose align_worlds(std::span<const PosePair> samples) {
     std::vector<double> distances;
     for (const Vector3& offset : offsets)
       distances.push_back((offset - aligned.translation).norm());
-    aligned.translation = mean_vector(offsets, near_ones(distances));
+    aligned.translation = mean_vector(offsets, inliers_of(distances));
   }
   return aligned;
 }

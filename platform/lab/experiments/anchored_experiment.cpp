@@ -19,26 +19,26 @@ namespace glint {
 namespace {
 
 constexpr std::array<double, 3> k_drifts = {0.3, 1, 3};
-constexpr int k_seeds = 20;
+constexpr int k_random_seeds = 20;
 constexpr int k_aligning = 300, k_judged = 1000;
 constexpr int k_aligning_quick = 100, k_judged_quick = 60;
-constexpr double k_covered_least = 90, k_covered_most = 99;
+constexpr double k_coverage_min_percent = 90, k_coverage_max_percent = 99;
 
-struct DriftingRun {
+struct DriftRun {
   ExperimentKind kind;
   double drift;
   std::uint64_t seed;
   int aligning, judged;
 };
 
-void follow(const DriftingRun& run, MethodRecord& record) {
+void follow(const DriftRun& run, MethodRecord& record) {
   sim::Scenario scenario =
       run.kind == ExperimentKind::still ? sim::experiment_static() : sim::experiment_dynamic(0);
   scenario.seed += run.seed - 1;
   scale_drift(run.drift, scenario.localisation);
   const Tool tool = scenario.tools.front().tool;
   const sim::Simulator simulator(with_reference(std::move(scenario)));
-  GlintChain chain(simulator.scenario().camera, ChainSetup{{tool, reference_board()}, 1, {}});
+  GlintChain chain(simulator.scenario().camera, ChainSetup{{tool, reference_body()}, 1, {}});
   record.begin_run();
   sim::SimFrame frame;
   const int begin = sim::k_aligning_frames - run.aligning,
@@ -47,7 +47,7 @@ void follow(const DriftingRun& run, MethodRecord& record) {
     simulator.render(i, frame);
     (void)chain.process(frame.view(), frame.head);
     const auto take =
-        i < sim::k_aligning_frames ? &MethodRecord::take_aligning : &MethodRecord::take_judged;
+        i < sim::k_aligning_frames ? &MethodRecord::take_aligning : &MethodRecord::add_evaluated;
     (record.*take)(frame, chain.followed(), 0);
   }
 }
@@ -56,7 +56,7 @@ ExperimentCase judged(ExperimentKind kind, double drift, const CaseOptions& opti
                       const std::function<void()>& step) {
   const sim::Scenario any = sim::experiment_static();
   MethodRecord record("glint", any.tools.front().tool, any.reference);
-  const int seeds = options.quick ? 1 : k_seeds;
+  const int seeds = options.quick ? 1 : k_random_seeds;
   for (int i = 0; i < seeds; ++i, step()) {
     follow(
         {kind, drift, options.seed + static_cast<std::uint64_t>(i),
@@ -77,9 +77,9 @@ ExperimentCase judged(ExperimentKind kind, double drift, const CaseOptions& opti
       {{"position", "mm", figures.position_mm.summary.mean_abs,
         bar(Bar::at_most(bars.position_mm))},
        {"angle", "deg", figures.angle_deg.summary.mean_abs, bar(Bar::at_most(bars.angle_deg))},
-       {"inside", "%", covered, bar(Bar::at_least(k_covered_least))}}};
+       {"inside", "%", covered, bar(Bar::at_least(k_coverage_min_percent))}}};
   if (!still)
-    out.figures.push_back({"inside_most", "%", covered, bar(Bar::at_most(k_covered_most))});
+    out.figures.push_back({"inside_most", "%", covered, bar(Bar::at_most(k_coverage_max_percent))});
   out.figures.push_back(
       {"frames_measured", "%", 100.0 * figures.samples / std::max(figures.frames, 1)});
   return out;
@@ -87,9 +87,9 @@ ExperimentCase judged(ExperimentKind kind, double drift, const CaseOptions& opti
 
 }  // namespace
 
-CaseList run_anchored(const CaseOptions& options) {
+CaseList run_drift_correction(const CaseOptions& options) {
   CaseList list{"anchored", {}, {}};
-  const int all = 2 * static_cast<int>(k_drifts.size()) * (options.quick ? 1 : k_seeds);
+  const int all = 2 * static_cast<int>(k_drifts.size()) * (options.quick ? 1 : k_random_seeds);
   int done = 0;
   const auto step = [&] {
     if (options.progress) options.progress(++done, all);

@@ -10,6 +10,6 @@
 
 namespace glint {
 
-[[nodiscard]] CaseList run_anchored(const CaseOptions& options);
+[[nodiscard]] CaseList run_drift_correction(const CaseOptions& options);
 
 }  // namespace glint

@@ -30,21 +30,21 @@ class LinearSlerp final : public Predictor {
   }
 
  private:
-  StampedPose before_, last_;
+  TimedPose before_, last_;
   int count_ = 0;
 };
 
-double share_of(double cutoff_hz, double seconds) {
+double smoothing_factor(double cutoff_hz, double seconds) {
   const double r = 2 * std::numbers::pi * cutoff_hz * seconds;
   return r / (r + 1);
 }
 
 class OneEuro final : public Predictor {
  public:
-  explicit OneEuro(const BaselineSettings& settings) : settings_(settings) {}
+  explicit OneEuro(const PredictorSettings& settings) : settings_(settings) {}
   void update(const UncertainPose& measured) override {
-    if (!known_) {
-      known_ = true;
+    if (!initialised_) {
+      initialised_ = true;
       time_ = measured.time;
       raw_ = pose_ = measured.pose;
       return;
@@ -56,9 +56,10 @@ class OneEuro final : public Predictor {
     const Vector6 ahead = pose_difference(measured.pose, pose_);
     const auto step = [&](const OneEuroSettings& s, int first) -> Vector3 {
       auto filtered = speed_.segment<3>(first);
-      filtered += share_of(s.speed_cutoff_hz, seconds) * (speed.segment<3>(first) - filtered);
-      const double cutoff = s.least_cutoff_hz + s.cutoff_per_speed * filtered.norm();
-      return share_of(cutoff, seconds) * ahead.segment<3>(first);
+      filtered +=
+          smoothing_factor(s.speed_cutoff_hz, seconds) * (speed.segment<3>(first) - filtered);
+      const double cutoff = s.cutoff_min_hz + s.cutoff_per_speed * filtered.norm();
+      return smoothing_factor(cutoff, seconds) * ahead.segment<3>(first);
     };
     pose_.translation += step(settings_.euro_position, 0);
     pose_.rotation =
@@ -71,8 +72,8 @@ class OneEuro final : public Predictor {
   }
 
  private:
-  BaselineSettings settings_;
-  bool known_ = false;
+  PredictorSettings settings_;
+  bool initialised_ = false;
   Time time_;
   Pose raw_, pose_;
   Vector6 speed_ = Vector6::Zero();
@@ -81,12 +82,12 @@ class OneEuro final : public Predictor {
 // Position and quaternion components, exponentially smoothed twice.
 class DoubleExponential final : public Predictor {
  public:
-  explicit DoubleExponential(const BaselineSettings& settings) : settings_(settings) {}
+  explicit DoubleExponential(const PredictorSettings& settings) : settings_(settings) {}
   void update(const UncertainPose& measured) override {
     Values value;
     value << measured.pose.translation, measured.pose.rotation.coeffs();
-    if (!known_) {
-      known_ = true;
+    if (!initialised_) {
+      initialised_ = true;
       once_ = twice_ = value;
     } else {
       if (value.tail<4>().dot(once_.tail<4>()) < 0) value.tail<4>() *= -1;
@@ -117,8 +118,8 @@ class DoubleExponential final : public Predictor {
     return {Quaternion(Eigen::Vector4d(values.tail<4>())).normalized(), values.head<3>()};
   }
 
-  BaselineSettings settings_;
-  bool known_ = false;
+  PredictorSettings settings_;
+  bool initialised_ = false;
   Time time_;
   double gap_ = 0;
   Values once_ = Values::Zero(), twice_ = Values::Zero();
@@ -147,12 +148,12 @@ struct VelocityGains {
 
 class ConstantVelocity final : public Predictor {
  public:
-  explicit ConstantVelocity(const BaselineSettings& settings)
-      : linear_{settings.velocity_noise_m2_s3}, angular_{settings.turn_noise_rad2_s3} {}
+  explicit ConstantVelocity(const PredictorSettings& settings)
+      : linear_{settings.velocity_noise_m2_s3}, angular_{settings.angular_noise_rad2_s3} {}
   void update(const UncertainPose& measured) override {
-    const Pose expected = known_ ? predict(measured.time) : measured.pose;
-    const double seconds = known_ ? (measured.time - time_).seconds() : 0;
-    known_ = true;
+    const Pose expected = initialised_ ? predict(measured.time) : measured.pose;
+    const double seconds = initialised_ ? (measured.time - time_).seconds() : 0;
+    initialised_ = true;
     time_ = measured.time;
     const Vector6 ahead = pose_difference(measured.pose, expected);
     const auto a = linear_.step(seconds, measured.covariance.diagonal().head<3>().mean());
@@ -171,7 +172,7 @@ class ConstantVelocity final : public Predictor {
 
  private:
   VelocityGains linear_, angular_;
-  bool known_ = false;
+  bool initialised_ = false;
   Time time_;
   Pose pose_;
   Vector6 speed_ = Vector6::Zero();
@@ -181,13 +182,13 @@ class ConstantVelocity final : public Predictor {
 
 PredictorPointer make_last_value() { return std::make_unique<LastValue>(); }
 PredictorPointer make_linear_slerp() { return std::make_unique<LinearSlerp>(); }
-PredictorPointer make_one_euro(const BaselineSettings& settings) {
+PredictorPointer make_one_euro(const PredictorSettings& settings) {
   return std::make_unique<OneEuro>(settings);
 }
-PredictorPointer make_double_exponential(const BaselineSettings& settings) {
+PredictorPointer make_double_exponential(const PredictorSettings& settings) {
   return std::make_unique<DoubleExponential>(settings);
 }
-PredictorPointer make_constant_velocity(const BaselineSettings& settings) {
+PredictorPointer make_constant_velocity(const PredictorSettings& settings) {
   return std::make_unique<ConstantVelocity>(settings);
 }
 

@@ -17,19 +17,19 @@
 namespace glint {
 
 struct OneEuroSettings {
-  double least_cutoff_hz, cutoff_per_speed, speed_cutoff_hz;
+  double cutoff_min_hz, cutoff_per_speed, speed_cutoff_hz;
 };
-struct BaselineSettings {
+struct PredictorSettings {
   OneEuroSettings euro_position{0.0124, 638, 24.6};   // cutoff per m/s
   OneEuroSettings euro_rotation{0.0204, 35.2, 3.44};  // cutoff per rad/s
   double exponential_position = 0.85, exponential_rotation = 0.516;
-  double velocity_noise_m2_s3 = 0.09, turn_noise_rad2_s3 = 0.55;
+  double velocity_noise_m2_s3 = 0.09, angular_noise_rad2_s3 = 0.55;
 };
 
 [[nodiscard]] PredictorPointer make_last_value();
 [[nodiscard]] PredictorPointer make_linear_slerp();
-[[nodiscard]] PredictorPointer make_one_euro(const BaselineSettings& settings = {});
-[[nodiscard]] PredictorPointer make_double_exponential(const BaselineSettings& settings = {});
-[[nodiscard]] PredictorPointer make_constant_velocity(const BaselineSettings& settings = {});
+[[nodiscard]] PredictorPointer make_one_euro(const PredictorSettings& settings = {});
+[[nodiscard]] PredictorPointer make_double_exponential(const PredictorSettings& settings = {});
+[[nodiscard]] PredictorPointer make_constant_velocity(const PredictorSettings& settings = {});
 
 }  // namespace glint

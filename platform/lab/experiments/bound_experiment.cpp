@@ -17,10 +17,10 @@ namespace {
 
 constexpr int k_samples = 10'000;
 constexpr int k_samples_quick = 400;
-constexpr double k_above_bound_most = 1.05;
-constexpr double k_nees_off_most = 0.1;
+constexpr double k_bound_ratio_max = 1.05;
+constexpr double k_nees_deviation_max = 0.1;
 constexpr std::array k_ranges_m = {0.3, 0.5, 0.8};
-constexpr std::array<SightNoise, 4> k_noises = {
+constexpr std::array<ObservationNoise, 4> k_noises = {
     {{0.05, 0.001}, {0.1, 0.001}, {0.1, 0.003}, {0.1, 0.005}}};
 
 struct TiltRange {
@@ -34,7 +34,7 @@ constexpr std::array k_tilts = {TiltRange{"tilt 20..60", 20, 60, true},
 struct BoundCase {
   const PointTool& tool;
   double range_m;
-  SightNoise noise;
+  ObservationNoise noise;
   TiltRange tilt;
 };
 
@@ -59,9 +59,9 @@ struct BoundErrors {
     const Pose& truth = drawn.T_camera_tool;
     const Vector3 mean = marker_mean(tool.tool);
     const Vector3 tip_error = pose * tool.tool.tip_m - truth * tool.tool.tip_m;
-    const double turned = turned_by(pose, truth);
+    const double turned = rotation_between_rad(pose, truth);
     ++found;
-    flips += turned_by(pose, drawn.T_camera_mirrored) < turned ? 1 : 0;
+    flips += rotation_between_rad(pose, drawn.T_camera_mirrored) < turned ? 1 : 0;
     position += (pose * mean - truth * mean).squaredNorm();
     tip += tip_error.squaredNorm();
     tip_mean += tip_error;
@@ -85,7 +85,7 @@ double nees_of(const RefinedPose& refined, const Pose& truth, const Vector3& tip
 
 ExperimentCase case_of(const BoundCase& c, const BoundErrors& errors, bool judged) {
   const bool glint = errors.method == "glint";
-  const Bar ratio = glint && judged ? Bar::at_most(k_above_bound_most) : Bar::none();
+  const Bar ratio = glint && judged ? Bar::at_most(k_bound_ratio_max) : Bar::none();
   ExperimentCase out{name_of(c), errors.method, errors.found, {}};
   out.figures = {
       {"position_rms", "mm", 1e3 * errors.rms(errors.position), {}},
@@ -108,7 +108,7 @@ ExperimentCase case_of(const BoundCase& c, const BoundErrors& errors, bool judge
   const double nees = errors.nees / static_cast<double>(errors.found);
   out.figures.push_back({"nees", "", nees, {}});
   out.figures.push_back({"nees_off_one", "", std::abs(nees - 1),
-                         judged ? Bar::at_most(k_nees_off_most) : Bar::none()});
+                         judged ? Bar::at_most(k_nees_deviation_max) : Bar::none()});
   return out;
 }
 
@@ -130,9 +130,9 @@ void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers
     const Vector3& marker = tool.markers_m[static_cast<std::size_t>(i)];
     if (!view.add(camera, tool, truth * marker, i, c.noise, numbers)) return;
     const Marker& seen = view.markers.items[static_cast<std::size_t>(i)];
-    const MarkerSight& sight = view.sights[static_cast<std::size_t>(i)];
+    const MarkerMeasurementModel& sight = view.sights[static_cast<std::size_t>(i)];
     const double range_m = seen.surface_range_m + tool.centre_offset_m();
-    weighted.push_back(weigh_marker(marker, sight.rays, range_m, sight.variance).value);
+    weighted.push_back(whiten_marker(marker, sight.rays, range_m, sight.variance).value);
     model.push_back(marker);
     measured.push_back(seen.ray * range_m);
   }
@@ -147,7 +147,7 @@ void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers
   const RigidFit svd = fit_rigid(model, measured);
   if (svd.reason == Reason::none)
     methods.svd.add(c.tool, drawn, svd.transform, mean_bound, tip_bound);
-  const SeedMatch seed = match_tool(measured, tool, {});
+  const BaselineMatch seed = match_tool(measured, tool, {});
   if (seed.reason == Reason::none)
     methods.seed.add(c.tool, drawn, seed.T_camera_tool, mean_bound, tip_bound);
 }
@@ -168,7 +168,8 @@ std::vector<BoundCase> cases_of(std::span<const PointTool> tools) {
   for (const PointTool& tool : tools) {
     for (const TiltRange& tilt : k_tilts) {
       for (const double range_m : k_ranges_m) {
-        for (const SightNoise& noise : k_noises) cases.push_back({tool, range_m, noise, tilt});
+        for (const ObservationNoise& noise : k_noises)
+          cases.push_back({tool, range_m, noise, tilt});
       }
     }
   }

@@ -11,9 +11,9 @@ namespace glint {
 struct CaseExperiment {
   const char* name;         // name of the subcommand
   const char* what;         // one line of help
-  bool wants_data = false;  // needs recordings: --data DIR
+  bool needs_data = false;  // needs recordings: --data DIR
   CaseList (*run)(const CaseOptions& options) = nullptr;
-  bool counts_tries = false;  // accepts --tries N
+  bool accepts_tries = false;  // accepts --tries N
 };
 
 [[nodiscard]] std::span<const CaseExperiment> case_experiments();

@@ -13,7 +13,7 @@ constexpr double k_diameters_px[] = {4, 5, 6, 8, 10};
 constexpr double k_diameter_spread_px = 0.5;
 // Error of the renderer itself: with 64 rays per rim pixel, its signal is off by up to a hundredth,
 // independently from pixel to pixel; a motion-blurred sphere is the mean of eight renderings.
-constexpr double k_rendered_unevenness = 0.006, k_smeared_unevenness = 0.002;
+constexpr double k_render_error = 0.006, k_blurred_render_error = 0.002;
 
 CentroidCase base(const std::string& name, double diameter_px) {
   CentroidCase one;
@@ -25,13 +25,13 @@ CentroidCase base(const std::string& name, double diameter_px) {
   camera.threshold = 1280;
   one.setting.range_m = range_of_diameter(diameter_px, k_focal_px, one.setting.radius_m);
   const sim::NoiseSettings& noise = one.setting.noise;
-  one.stated = {noise.read_sigma, noise.shot_counts, k_rendered_unevenness};
+  one.stated = {noise.read_sigma, noise.shot_counts, k_render_error};
   return one;
 }
 
-void smear(CentroidCase& one) {
+void add_motion_blur(CentroidCase& one) {
   one.setting.smear_px = 2;
-  one.stated.proportional = k_smeared_unevenness;
+  one.stated.proportional = k_blurred_render_error;
 }
 
 CentroidCase sized(const std::string& kind, double diameter_px) {
@@ -49,19 +49,19 @@ void saturate(CentroidCase& one, double times) {
 }
 
 // 70 counts of 8 bits, noise 2 % of full scale, threshold half-way.
-void weaken(CentroidCase& one) {
+void reduce_signal(CentroidCase& one) {
   one.setting.camera.reflectivity_bits = 8;
   one.setting.camera.threshold = 55;
   one.setting.background_counts = 20;
   one.setting.peak_counts = 70;
   one.setting.noise.read_sigma = 0.02 * 255;
   one.setting.noise.shot_counts = 0;
-  one.stated = {one.setting.noise.read_sigma, 0, k_rendered_unevenness};
+  one.stated = {one.setting.noise.read_sigma, 0, k_render_error};
   one.rms_max_px = 0.08;
 }
 
 // Diameter 6.2 px: between two spheres 8 px apart exactly one pixel column stays dark.
-CentroidCase spoilt(const std::string& name, std::uint8_t flag) {
+CentroidCase disturbed(const std::string& name, std::uint8_t flag) {
   CentroidCase one = base(name, 6.2);
   one.whole = false;
   one.flag = flag;
@@ -83,7 +83,7 @@ std::vector<CentroidCase> sized_cases() {
   for (const double diameter : k_diameters_px) cases.push_back(sized("plain", diameter));
   for (const double diameter : k_diameters_px) {
     cases.push_back(sized("smeared by 2 px", diameter));
-    smear(cases.back());
+    add_motion_blur(cases.back());
   }
   for (const double diameter : k_diameters_px) {
     cases.push_back(sized("3 x saturated", diameter));
@@ -92,23 +92,23 @@ std::vector<CentroidCase> sized_cases() {
   for (const double diameter : k_diameters_px) {
     cases.push_back(sized("3 x saturated, smeared", diameter));
     saturate(cases.back(), 3);
-    smear(cases.back());
+    add_motion_blur(cases.back());
   }
   for (const double diameter : k_diameters_px) {
     cases.push_back(sized("70 counts, 2 % noise", diameter));
-    weaken(cases.back());
+    reduce_signal(cases.back());
   }
   return cases;
 }
 
-std::vector<CentroidCase> spoilt_cases() {
+std::vector<CentroidCase> disturbed_cases() {
   std::vector<CentroidCase> cases;
-  cases.push_back(spoilt("cut by the frame", k_blob_touches_edge));
+  cases.push_back(disturbed("cut by the frame", k_blob_touches_edge));
   cases.back().setting.place_px = {0.5, 32};
-  cases.push_back(spoilt("another beside", k_blob_has_neighbour));
-  cases.back().setting.other_px = {8, 0};
-  cases.push_back(spoilt("merged with another", k_blob_uneven));
-  cases.back().setting.other_px = {6, 0};
+  cases.push_back(disturbed("another beside", k_blob_has_neighbour));
+  cases.back().setting.second_offset_px = {8, 0};
+  cases.push_back(disturbed("merged with another", k_blob_partial_or_merged));
+  cases.back().setting.second_offset_px = {6, 0};
   cases.push_back(sized("1.2 x saturated", 6));
   saturate(cases.back(), 1.2);
   cases.back().whole = false;

@@ -24,7 +24,7 @@ struct CentroidCase {
 [[nodiscard]] std::vector<CentroidCase> sized_cases();
 
 // Cut by the frame, with a neighbour, merged with it; 1.2 and 10 times saturated.
-[[nodiscard]] std::vector<CentroidCase> spoilt_cases();
+[[nodiscard]] std::vector<CentroidCase> disturbed_cases();
 
 // 45 degrees off the axis, near and far, with a pinhole and with the headset's lens.
 [[nodiscard]] std::vector<CentroidCase> off_axis_cases();

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int k_spheres = 2000, k_spheres_quick = 150;
 // Limits of the ratio of rms error to stated sigma.
-constexpr double k_ratio_most = 1.4, k_ratio_least = 0.7;
+constexpr double k_ratio_max = 1.4, k_ratio_min = 0.7;
 constexpr double k_corrected_px = 0.02;  // limit of the bias after sphere correction
-constexpr double k_flagged_least = 0.95;
+constexpr double k_flagged_min = 0.95;
 
 // Error statistics of one method on one case.
 class Errors {
@@ -43,7 +43,7 @@ struct Outcome {
   std::int64_t markers = 0, flagged = 0;
 };
 
-void add(Outcome& outcome, const CentroidCase& one, const SpherePictures::Truth& truth,
+void add(Outcome& outcome, const CentroidCase& one, const SphereImages::Truth& truth,
          const CentroidMethods::Located& located) {
   const Blob& blob = located.blob;
   outcome.raw.add(blob.centroid_px - truth.centre_px);
@@ -62,19 +62,19 @@ void add(Outcome& outcome, const CentroidCase& one, const SpherePictures::Truth&
 }
 
 Outcome measure(const CentroidCase& one, int spheres, std::uint64_t seed) {
-  SpherePictures pictures(one.setting, seed);
+  SphereImages pictures(one.setting, seed);
   CentroidMethods methods(pictures.camera(), one.stated,
                           {one.setting.radius_m, MarkerShape::sphere});
   Outcome outcome;
   FrameBuffer buffer;
   for (int i = 0; i < spheres; ++i) {
     const auto number = static_cast<std::uint64_t>(i);
-    const SpherePictures::Truth truth = pictures.render(number, buffer);
+    const SphereImages::Truth truth = pictures.render(number, buffer);
     const Frame frame = buffer.view({}, {}, static_cast<std::uint32_t>(i));
     if (const auto located = methods.locate(frame, truth.centre_px)) {
       add(outcome, one, truth, *located);
     }
-    if (const auto place = methods.locate_as_seed(frame, truth.centre_px)) {
+    if (const auto place = methods.locate_by_baseline(frame, truth.centre_px)) {
       outcome.seed.add(*place - truth.centre_px);
     }
   }
@@ -93,12 +93,12 @@ ExperimentCase glint_case(const CentroidCase& one, const Outcome& outcome, int s
   const Bar bar = one.rms_max_px > 0 ? Bar::at_most(one.rms_max_px) : Bar::none();
   out.figures.push_back({"rms", "px", rms, bar});
   out.figures.push_back({"sigma", "px", sigma});
-  out.figures.push_back({"rms_over_sigma", "", rms / sigma, Bar::at_most(k_ratio_most)});
+  out.figures.push_back({"rms_over_sigma", "", rms / sigma, Bar::at_most(k_ratio_max)});
   if (one.whole) {
-    out.figures.push_back({"sigma_over_rms", "", sigma / rms, Bar::at_most(1 / k_ratio_least)});
+    out.figures.push_back({"sigma_over_rms", "", sigma / rms, Bar::at_most(1 / k_ratio_min)});
   } else {
-    out.figures.push_back({"flagged", "", share(outcome.flagged, outcome.raw.count()),
-                           Bar::at_least(k_flagged_least)});
+    out.figures.push_back(
+        {"flagged", "", share(outcome.flagged, outcome.raw.count()), Bar::at_least(k_flagged_min)});
   }
   out.figures.push_back({"found", "", share(outcome.raw.count(), spheres)});
   return out;
@@ -174,8 +174,8 @@ class Plots {
 
 CaseList run_centroid_experiment(const CaseOptions& options) {
   const int spheres = options.quick ? k_spheres_quick : k_spheres;
-  const auto sized = sized_cases(), spoilt = spoilt_cases(), off_axis = off_axis_cases();
-  const int total = spheres * static_cast<int>(sized.size() + spoilt.size() + off_axis.size());
+  const auto sized = sized_cases(), disturbed = disturbed_cases(), off_axis = off_axis_cases();
+  const int total = spheres * static_cast<int>(sized.size() + disturbed.size() + off_axis.size());
   int done = 0;
   const auto measured = [&](const CentroidCase& one) {
     const Outcome outcome = measure(one, spheres, options.seed);
@@ -194,7 +194,7 @@ CaseList run_centroid_experiment(const CaseOptions& options) {
     list.cases.push_back(other_case(one, "seed", outcome.seed, spheres));
     if (outcome.markers > 0) list.cases.push_back(range_case(one, outcome));
   }
-  for (const CentroidCase& one : spoilt) {
+  for (const CentroidCase& one : disturbed) {
     list.cases.push_back(glint_case(one, measured(one), spheres));
   }
   for (const CentroidCase& one : off_axis) list.cases.push_back(off_axis_case(one, measured(one)));

@@ -38,8 +38,8 @@ CentroidMethods::CentroidMethods(const Camera& camera, const PixelNoise& noise,
     : camera_(camera),
       settings_{2, k_area_max_px, camera.threshold, saturated_from(camera), noise},
       nominal_(nominal),
-      shift_(sphere_shift(camera.model)),
-      seed_(std::make_unique<SeedFrontEnd>(camera, SeedSettings{})) {}
+      shift_(sphere_offset(camera.model)),
+      seed_(std::make_unique<BaselineFrontEnd>(camera, SeedSettings{})) {}
 
 CentroidMethods::~CentroidMethods() = default;
 
@@ -65,8 +65,8 @@ std::optional<CentroidMethods::Located> CentroidMethods::locate(const Frame& fra
   return out;
 }
 
-std::optional<Vector2> CentroidMethods::locate_as_seed(const Frame& frame,
-                                                       const Vector2& truth_px) {
+std::optional<Vector2> CentroidMethods::locate_by_baseline(const Frame& frame,
+                                                           const Vector2& truth_px) {
   seed_->undistort(frame);
   seed_->threshold(seed_->whole());
   seed_->halve();

@@ -12,7 +12,7 @@
 
 namespace glint {
 
-class SeedFrontEnd;
+class BaselineFrontEnd;
 
 class CentroidMethods {
  public:
@@ -30,14 +30,15 @@ class CentroidMethods {
   [[nodiscard]] std::optional<Located> locate(const Frame& frame, const Vector2& truth_px);
 
   // By the baseline.
-  [[nodiscard]] std::optional<Vector2> locate_as_seed(const Frame& frame, const Vector2& truth_px);
+  [[nodiscard]] std::optional<Vector2> locate_by_baseline(const Frame& frame,
+                                                          const Vector2& truth_px);
 
  private:
   Camera camera_;
   BlobSettings settings_;
   NominalMarker nominal_;
-  SphereShift shift_;
-  std::unique_ptr<SeedFrontEnd> seed_;
+  SphereOffset shift_;
+  std::unique_ptr<BaselineFrontEnd> seed_;
   std::unique_ptr<Runs> runs_ = std::make_unique<Runs>();
   std::unique_ptr<BlobScratch> scratch_ = std::make_unique<BlobScratch>();
   std::unique_ptr<Blobs> blobs_ = std::make_unique<Blobs>();

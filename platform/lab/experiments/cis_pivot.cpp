@@ -27,7 +27,7 @@ void require(const CisFile& file, std::size_t counts) {
                    std::to_string(counts));
 }
 
-std::vector<Vector3> through(const Pose& T, std::vector<Vector3> points) {
+std::vector<Vector3> transformed(const Pose& T, std::vector<Vector3> points) {
   for (Vector3& point : points) point = T * point;
   return points;
 }
@@ -42,13 +42,13 @@ Pose fitted(std::span<const Vector3> model, std::span<const Vector3> measured,
 
 // Pointer poses from its markers. The first frame's markers, relative to their mean, are the
 // geometry, as in the course.
-std::vector<StampedPose> poses_of(const std::vector<std::vector<Vector3>>& frames,
-                                  const std::string& path) {
+std::vector<TimedPose> poses_of(const std::vector<std::vector<Vector3>>& frames,
+                                const std::string& path) {
   std::vector<Vector3> model = frames.front();
   Vector3 mean = Vector3::Zero();
   for (const Vector3& point : model) mean += point / static_cast<double>(model.size());
   for (Vector3& point : model) point -= mean;
-  std::vector<StampedPose> poses;
+  std::vector<TimedPose> poses;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     poses.push_back({Time{static_cast<std::int64_t>(i)}, fitted(model, frames[i], path)});
   }
@@ -78,7 +78,7 @@ std::vector<std::vector<Vector3>> frames_optical(const std::string& path,
   for (std::size_t f = 0; f < static_cast<std::size_t>(file.counts[2]); ++f) {
     const std::size_t first = f * (base_count + markers);
     const Pose T_base_tracker = fitted(file.points_m(first, base_count), base, path);
-    frames.push_back(through(T_base_tracker, file.points_m(first + base_count, markers)));
+    frames.push_back(transformed(T_base_tracker, file.points_m(first + base_count, markers)));
   }
   return frames;
 }

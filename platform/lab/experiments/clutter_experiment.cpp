@@ -22,9 +22,9 @@ namespace glint {
 namespace {
 
 constexpr int k_clutter_frames = 2000, k_clutter_frames_quick = 60;
-constexpr int k_seed_frames = 300, k_seed_frames_quick = 10;
-constexpr std::array k_strays = {0, 20, 50, 100, 200};
-constexpr int k_runs_a_blob = 8;  // as for a cell file that states only blobs
+constexpr int k_baseline_frames = 300, k_seed_frames_quick = 10;
+constexpr std::array k_false_markers = {0, 20, 50, 100, 200};
+constexpr int k_runs_per_blob = 8;  // as for a cell file that states only blobs
 
 struct ClutterCase {
   std::string name;
@@ -35,14 +35,14 @@ struct ClutterCase {
 
 struct SearchTally {
   int blobs_most = 0, steps_most = 0;
-  std::int64_t full = 0;  // searches that ran out of steps
+  std::int64_t exhausted = 0;  // searches that ran out of steps
 
   void add(Tracker& tracker, const ToolSet& tools) {
     blobs_most = std::max(blobs_most, tracker.token<Markers>().count);
     for (int t = 0; t < tools.count; ++t) {
       const Labelings& labelings =
-          tracker.parts<ToolLabelings>(t % k_tool_slices).tools[static_cast<std::size_t>(t)];
-      full += labelings.reason == Reason::search_full ? 1 : 0;
+          tracker.parts<ToolLabelings>(t % k_tool_partitions).tools[static_cast<std::size_t>(t)];
+      exhausted += labelings.reason == Reason::search_full ? 1 : 0;
       steps_most = std::max(steps_most, static_cast<int>(labelings.hypotheses));
     }
   }
@@ -53,7 +53,7 @@ Cell cell_of(const ClutterCase& c) {
   set_camera(cell, c.scenario.camera);
   cell.tools = c.tools;
   cell.budget.blobs = k_blobs_max;
-  cell.budget.runs_per_band = std::min(k_runs_a_blob * k_blobs_max, k_runs_per_band_max);
+  cell.budget.runs_per_band = std::min(k_runs_per_blob * k_blobs_max, k_runs_per_band_max);
   return cell;
 }
 
@@ -84,16 +84,16 @@ FrameOutcome as_followed(const FrameOutcome& fitted, const Estimates& estimates,
 }
 
 // One baseline tracker per tool.
-class SeedTrackers {
+class BaselineTrackers {
  public:
-  explicit SeedTrackers(const ClutterCase& c) {
+  explicit BaselineTrackers(const ClutterCase& c) {
     for (int t = 0; t < c.tools.count; ++t)
       trackers_.emplace_back(c.scenario.camera, c.tools.items[static_cast<std::size_t>(t)]);
   }
   [[nodiscard]] FrameOutcome process(const Frame& frame, const HeadPose& head) {
     FrameOutcome outcome;
     for (std::size_t t = 0; t < trackers_.size(); ++t) {
-      const SeedResult found = trackers_[t].process(frame, head);
+      const BaselineResult found = trackers_[t].process(frame, head);
       // The baseline states no labeling: `swapped` is judged by all markers.
       outcome.tools[t].seen = found.reason == Reason::none;
       outcome.tools[t].reason = found.reason;
@@ -104,7 +104,7 @@ class SeedTrackers {
   }
 
  private:
-  std::vector<SeedTracker> trackers_;
+  std::vector<BaselineTracker> trackers_;
 };
 
 void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) {
@@ -113,11 +113,11 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   configure(cell, *tracker);
   tracker->latest<ToolSet>().set(c.tools, 1, 0);
   const sim::Simulator simulator(c.scenario);
-  SeedTrackers seed(c);
+  BaselineTrackers seed(c);
   ClutterTally glint(c.tools), fits(c.tools), published(c.tools);
   SearchTally search;
   sim::SimFrame frame;
-  const int seed_frames = options.quick ? k_seed_frames_quick : k_seed_frames;
+  const int seed_frames = options.quick ? k_seed_frames_quick : k_baseline_frames;
   for (int i = 0; i < simulator.frame_count(); ++i) {
     simulator.render(i, frame);
     tracker->input<Frame>() = frame.view();
@@ -134,7 +134,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   figures.push_back({"gross_fits", "", static_cast<double>(fits.gross())});
   figures.push_back({"blobs_most", "", static_cast<double>(search.blobs_most)});
   figures.push_back({"named_most", "", static_cast<double>(search.steps_most)});
-  figures.push_back({"searches_full", "", static_cast<double>(search.full)});
+  figures.push_back({"searches_full", "", static_cast<double>(search.exhausted)});
   list.cases.push_back({c.name, "glint", glint.trackable(), std::move(figures)});
   list.cases.push_back({c.name, "seed", published.trackable(), published.figures({}, {})});
 }
@@ -143,7 +143,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
 ExperimentCase refusal(const std::string& name, const ToolSet& tools, const Bar& bar) {
   double refused = 0;
   try {
-    (void)tool_notices(tools, {"first.toml", "second.toml"}, "cell.toml");
+    (void)tool_warnings(tools, {"first.toml", "second.toml"}, "cell.toml");
   } catch (const InputError&) {
     refused = 1;
   }
@@ -154,7 +154,7 @@ std::vector<ClutterCase> cases_of(const CaseOptions& options) {
   const int frames = options.quick ? k_clutter_frames_quick : k_clutter_frames;
   std::vector<ClutterCase> cases;
   const ToolSet five = five_tools(options.seed);
-  for (const int strays : k_strays)
+  for (const int strays : k_false_markers)
     cases.push_back({"5 tools, " + std::to_string(strays) + " strays", five,
                      cluttered_run(five, strays, frames, options.seed), Bar::at_least(99.5),
                      Bar::at_most(0)});
@@ -165,9 +165,9 @@ std::vector<ClutterCase> cases_of(const CaseOptions& options) {
         {name, tools, passing_run(tools, way, frames, options.seed), Bar::none(), Bar::at_most(0)});
   };
   passing("just accepted, side by side", close, Passing::beside);
-  passing("just accepted, one hides the other", close, Passing::in_front);
+  passing("just accepted, one hides the other", close, Passing::occluding);
   passing("told apart, side by side", distinct, Passing::beside);
-  passing("told apart, one hides the other", distinct, Passing::in_front);
+  passing("told apart, one hides the other", distinct, Passing::occluding);
   return cases;
 }
 

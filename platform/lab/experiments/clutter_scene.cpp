@@ -56,8 +56,8 @@ void add_hand(const Tool& tool, const Vector3& place, sim::MotionPointer moved_b
               const sim::HandSettings& settings, sim::Scenario& scenario) {
   const sim::Grip grip = sim::best_grip(tool);
   sim::HandSettings hand = settings;
-  hand.T_world_tool = sim::held_at(grip, place, Vector3::Zero());
-  hand.grip_m = grip.middle;
+  hand.T_world_tool = sim::grip_pose(grip, place, Vector3::Zero());
+  hand.grip_m = grip.centroid;
   sim::MotionPointer motion = sim::hand_motion(hand, scenario.seed, scenario.tools.size());
   if (moved_by) motion = sim::attached_motion(std::move(moved_by), std::move(motion));
   scenario.tools.push_back(sim::held_tool(tool, grip, scenario.signal, std::move(motion)));
@@ -128,8 +128,8 @@ ToolSet nearly_equal_tools(double sigmas) {
     moved.y() -= k_step_m;
     prepare(tools.items[1]);
     bool apart = true;
-    for (const Likeness& likeness : distinguish(tools, settings).likenesses)
-      apart = apart && likeness.seen == likeness.other;
+    for (const WrongLabeling& labeling : distinguish(tools, settings).wrong_labelings)
+      apart = apart && labeling.seen == labeling.other;
     if (apart) return tools;
   }
   throw std::logic_error("clutter: no shift tells the two tools apart");

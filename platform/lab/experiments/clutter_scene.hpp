@@ -23,7 +23,7 @@ namespace glint {
 [[nodiscard]] sim::Scenario cluttered_run(const ToolSet& tools, int strays, int frames,
                                           std::uint64_t seed);
 
-enum class Passing { beside, in_front };
+enum class Passing { beside, occluding };
 // Two hands that swing past each other every two seconds, 0.1 m apart: one above the other, or the
 // first between camera and second, which it occludes for a while.
 [[nodiscard]] sim::Scenario passing_run(const ToolSet& two_tools, Passing passing, int frames,

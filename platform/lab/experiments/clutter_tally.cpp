@@ -10,7 +10,8 @@ namespace {
 constexpr double k_swapped_m = 0.02;
 constexpr int k_markers_to_find = 4;
 
-bool lies_on(const Tool& tool, const ToolOutcome& found, const Tool& other, const Pose& truth) {
+bool matches_tool(const Tool& tool, const ToolOutcome& found, const Tool& other,
+                  const Pose& truth) {
   for (int i = 0; i < tool.marker_count; ++i) {
     if (((found.marker_mask >> i) & 1) == 0) continue;
     const Vector3 place = found.T_camera_tool * tool.markers_m[static_cast<std::size_t>(i)];
@@ -25,7 +26,7 @@ bool lies_on(const Tool& tool, const ToolOutcome& found, const Tool& other, cons
 
 }  // namespace
 
-void ClutterTally::add(const FrameOutcome& outcome, const FrameTruth& truth) {
+void ClutterTally::add(const FrameOutcome& outcome, const FrameGroundTruth& truth) {
   const Pose T_camera_world = truth.T_world_camera.inverse();
   for (int t = 0; t < tools_.count; ++t) {
     const auto i = static_cast<std::size_t>(t);
@@ -50,8 +51,8 @@ void ClutterTally::add(const FrameOutcome& outcome, const FrameTruth& truth) {
     ++gross_;
     for (int o = 0; o < tools_.count; ++o) {
       const auto other = static_cast<std::size_t>(o);
-      if (o == t || !lies_on(tools_.items[i], found, tools_.items[other],
-                             T_camera_world * truth.T_world_tool[other]))
+      if (o == t || !matches_tool(tools_.items[i], found, tools_.items[other],
+                                  T_camera_world * truth.T_world_tool[other]))
         continue;
       ++swapped_;
       break;

@@ -22,7 +22,7 @@ class ClutterTally {
  public:
   explicit ClutterTally(const ToolSet& tools) : tools_(tools) {}
 
-  void add(const FrameOutcome& outcome, const FrameTruth& truth);
+  void add(const FrameOutcome& outcome, const FrameGroundTruth& truth);
 
   [[nodiscard]] std::int64_t trackable() const { return trackable_; }  // tools times frames
   [[nodiscard]] std::int64_t tracked() const { return tracked_; }      // of those, fresh

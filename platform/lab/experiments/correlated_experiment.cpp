@@ -28,18 +28,18 @@ constexpr int k_runs = 100, k_runs_quick = 4;
 constexpr double k_run_s = 200, k_warm_up_s = 3;
 constexpr double k_chi_square_95 = 7.814728;  // 3 degrees of freedom
 // A white part of zero has no inverse.
-constexpr double k_white_least_m = 1e-5, k_white_least_rad = 1e-5;
+constexpr double k_white_min_m = 1e-5, k_white_min_rad = 1e-5;
 constexpr std::array<double, 4> k_judged_s = {0.2, 1, 5, 20};
 
-struct RestModel {
+struct StaticModel {
   NoiseCalibration noise;
   Matrix6 white = Matrix6::Zero();
   CorrelatedErrors correlated;
 
-  explicit RestModel(NoiseCalibration of) : noise(std::move(of)) {
+  explicit StaticModel(NoiseCalibration of) : noise(std::move(of)) {
     for (Eigen::Index k = 0; k < 6; ++k) {
       const AxisNoise& axis = noise.axes[static_cast<std::size_t>(k)];
-      const double least = k < 3 ? k_white_least_m : k_white_least_rad;
+      const double least = k < 3 ? k_white_min_m : k_white_min_rad;
       white(k, k) = std::max(axis.white * axis.white, least * least);
       correlated.fast(k, k) = axis.fast * axis.fast;
       correlated.slow(k, k) = axis.slow * axis.slow;
@@ -47,7 +47,7 @@ struct RestModel {
   }
 };
 
-struct RestErrors {
+struct StaticErrors {
   std::int64_t n = 0, inside_position = 0, inside_rotation = 0;
   double nees = 0, square_m2 = 0, stated_m2 = 0;
 
@@ -69,15 +69,15 @@ struct RestErrors {
   }
 };
 
-std::unique_ptr<ToolMotion> filter_for(const RestModel& model) {
+std::unique_ptr<ToolMotion> filter_for(const StaticModel& model) {
   auto motion = std::make_unique<ToolMotion>();
   motion->settings.rest.correlation = model.noise.correlation;
   return motion;
 }
 
 // Runs the filter on a static pose with errors and covariance of the model.
-void generated_run(const RestModel& model, double period_s, std::uint64_t seed, std::uint64_t run,
-                   RestErrors& judged) {
+void generated_run(const StaticModel& model, double period_s, std::uint64_t seed, std::uint64_t run,
+                   StaticErrors& judged) {
   const auto motion = filter_for(model);
   const sim::RandomKey key{seed, sim::Stream::reference, run};
   const Pose truth{Quaternion::Identity(), {0.1, 0.05, 0.5}};
@@ -108,10 +108,10 @@ void generated_run(const RestModel& model, double period_s, std::uint64_t seed, 
 }
 
 // Mean pose of the series, from small deviations from its first pose.
-Pose mean_pose(const std::vector<StampedPose>& poses) {
+Pose mean_pose(const std::vector<TimedPose>& poses) {
   Vector6 sum = Vector6::Zero();
   const Pose& first = poses.front().pose;
-  for (const StampedPose& pose : poses) sum += pose_difference(pose.pose, first);
+  for (const TimedPose& pose : poses) sum += pose_difference(pose.pose, first);
   sum /= static_cast<double>(poses.size());
   return {from_rotation_vector(sum.tail<3>()) * first.rotation, first.translation + sum.head<3>()};
 }
@@ -120,7 +120,7 @@ Bar within_bars(double low, double high, double value) {
   return value < low ? Bar::at_least(low) : Bar::at_most(high);
 }
 
-ExperimentCase judged_case(const std::string& name, const RestErrors& judged, bool of_coverage,
+ExperimentCase judged_case(const std::string& name, const StaticErrors& judged, bool of_coverage,
                            bool quick) {
   const double position = judged.percent(judged.inside_position);
   const double rotation = judged.percent(judged.inside_rotation);
@@ -163,18 +163,18 @@ CaseList run_correlated(const CaseOptions& options) {
   const auto series = [&](const char* tool) {
     const Trajectory loaded =
         load_trajectory(options.data + "/hl2_real/rest_hl2_tool_" + tool + ".tum");
-    std::vector<StampedPose> poses = loaded.samples;
-    for (StampedPose& pose : poses) pose.time = loaded.begin + (pose.time - Time{});
+    std::vector<TimedPose> poses = loaded.samples;
+    for (TimedPose& pose : poses) pose.time = loaded.begin + (pose.time - Time{});
     return poses;
   };
-  std::vector<StampedPose> poses = relative_poses(series("a"), series("b"), milliseconds(20));
-  const RestModel model(calibrate_noise(poses, "hl2_real"));
+  std::vector<TimedPose> poses = relative_poses(series("a"), series("b"), milliseconds(20));
+  const StaticModel model(calibrate_noise(poses, "hl2_real"));
   CaseList list{"correlated", {allan_case(model.noise)}, {}};
 
-  RestErrors real;
+  StaticErrors real;
   const auto motion = filter_for(model);
   const Pose truth = mean_pose(poses);
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     if (motion->update({pose.time, pose.pose, model.white}, model.correlated) == Reason::none)
       real.add(*motion, truth);
   }
@@ -183,7 +183,7 @@ CaseList run_correlated(const CaseOptions& options) {
   const int runs = options.quick ? k_runs_quick : k_runs;
   int done = 0;
   for (const double period_s : {0.2, 1.0 / 45}) {
-    RestErrors judged;
+    StaticErrors judged;
     for (int run = 0; run < runs; ++run) {
       generated_run(model, period_s, options.seed, static_cast<std::uint64_t>(run), judged);
       if (options.progress) options.progress(++done, 2 * runs);

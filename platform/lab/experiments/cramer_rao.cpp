@@ -12,7 +12,7 @@ constexpr double k_step_m = 0.001;
 constexpr double k_step_rad = 0.01;
 
 // Minimal parameters: translation of the reference point, then rotation about it.
-Pose changed(const Pose& pose, const Vector3& reference_m, int parameter, double by) {
+Pose perturbed(const Pose& pose, const Vector3& reference_m, int parameter, double by) {
   const Vector3 axis = Vector3::Unit(parameter % 3);
   const Vector3 place = pose * reference_m;
   if (parameter < 3) return {pose.rotation, pose.translation + by * axis};
@@ -30,7 +30,7 @@ Vector3 measured(const Camera& camera, const Vector3& point, const MarkerVarianc
 }  // namespace
 
 Matrix6 cramer_rao_bound(const Camera& camera, const Tool& tool, const Pose& T_camera_tool,
-                         const Vector3& reference_m, const SightNoise& noise) {
+                         const Vector3& reference_m, const ObservationNoise& noise) {
   const MarkerVariance variance = noise.variance();
   Matrix6 information = Matrix6::Zero();
   for (int m = 0; m < tool.marker_count; ++m) {
@@ -38,8 +38,8 @@ Matrix6 cramer_rao_bound(const Camera& camera, const Tool& tool, const Pose& T_c
     Eigen::Matrix<double, 3, 6> jacobian;
     for (int i = 0; i < 6; ++i) {
       const double step = i < 3 ? k_step_m : k_step_rad;
-      const Pose up = changed(T_camera_tool, reference_m, i, step);
-      const Pose down = changed(T_camera_tool, reference_m, i, -step);
+      const Pose up = perturbed(T_camera_tool, reference_m, i, step);
+      const Pose down = perturbed(T_camera_tool, reference_m, i, -step);
       jacobian.col(i) =
           (measured(camera, up * marker, variance) - measured(camera, down * marker, variance)) /
           (2 * step);

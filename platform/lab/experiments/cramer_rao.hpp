@@ -16,6 +16,6 @@ namespace glint {
 // all markers visible.
 [[nodiscard]] Matrix6 cramer_rao_bound(const Camera& camera, const Tool& tool,
                                        const Pose& T_camera_tool, const Vector3& reference_m,
-                                       const SightNoise& noise);
+                                       const ObservationNoise& noise);
 
 }  // namespace glint

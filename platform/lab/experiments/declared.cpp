@@ -44,9 +44,9 @@ Json localisation_json(const sim::LocalisationSettings& settings) {
           {"rest_angle_rad", settings.rest_angle_rad},
           {"rest_correlation_s", settings.rest_correlation_s},
           {"position_per_speed_s", settings.position_per_speed_s},
-          {"position_per_turn_m", settings.position_per_turn_m},
+          {"position_per_turn_m", settings.position_per_angular_speed_m},
           {"angle_per_speed_s_m", settings.angle_per_speed_s_m},
-          {"angle_per_turn_s", settings.angle_per_turn_s},
+          {"angle_per_turn_s", settings.angle_per_angular_speed_s},
           {"motion_correlation_s", settings.motion_correlation_s},
           {"motion_position_bias", vector_json(settings.motion_position_bias)},
           {"motion_angle_bias", vector_json(settings.motion_angle_bias)},
@@ -54,7 +54,7 @@ Json localisation_json(const sim::LocalisationSettings& settings) {
           {"pivot_m", settings.pivot_m}};
 }
 
-Json seed_json(const SeedSettings& seed) {
+Json baseline_json(const SeedSettings& seed) {
   return {{"delta_m", seed.delta_m},
           {"max_rms_m", seed.max_rms_m},
           {"min_markers", seed.min_markers},
@@ -74,7 +74,7 @@ std::string declared_parameters(const std::vector<ExperimentRun>& runs) {
     json["reference"] = {{"position_sigma_m", scenario.reference.position_sigma_m},
                          {"angle_sigma_rad", scenario.reference.angle_sigma_rad}};
   }
-  json["seed_method"] = seed_json(SeedSettings{});
+  json["seed_method"] = baseline_json(SeedSettings{});
   json["runs"] = Json::array();
   for (const ExperimentRun& run : runs) {
     json["runs"].push_back({{"seed", run.scenario.seed},

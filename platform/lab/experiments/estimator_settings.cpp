@@ -18,10 +18,10 @@ Json correspond_json(const CorrespondSettings& settings) {
           {"delta_min_m", settings.delta_min_m},
           {"max_rms_m", settings.max_rms_m},
           {"prior_gate_m", settings.prior_gate_m},
-          {"few_gate_m", settings.few_gate_m},
+          {"few_gate_m", settings.partial_gate_m},
           {"min_markers_without_prior", settings.min_markers_without_prior},
           {"min_markers_with_prior", settings.min_markers_with_prior},
-          {"fewer_kept", settings.fewer_kept},
+          {"fewer_kept", settings.fewer_markers_max},
           {"markers_max", settings.markers_max},
           {"search_steps_max", settings.search_steps_max}};
 }
@@ -36,7 +36,7 @@ Json adaptation_json(const AdaptationSettings& settings) {
   return {{"frames", settings.frames},
           {"floor", settings.floor},
           {"ceiling", settings.ceiling},
-          {"innovation_max", settings.innovation_max}};
+          {"innovation_max", settings.nis_ratio_max}};
 }
 
 Json motion_json(const ToolMotionSettings& settings) {
@@ -45,7 +45,7 @@ Json motion_json(const ToolMotionSettings& settings) {
           {"angular_noise_rad2_s5", settings.motion.angular_noise_rad2_s5},
           {"angular_damping_1_s", settings.motion.angular_damping_1_s},
           {"start_speed_m_s", settings.motion.start_speed_m_s},
-          {"start_turn_rad_s", settings.motion.start_turn_rad_s},
+          {"start_turn_rad_s", settings.motion.start_angular_speed_rad_s},
           {"linear", adaptation_json(settings.linear)},
           {"angular", adaptation_json(settings.angular)},
           {"short_chi_square_max", settings.rest.short_chi_square_max},
@@ -53,16 +53,16 @@ Json motion_json(const ToolMotionSettings& settings) {
           {"drift_chi_square", settings.rest.drift_chi_square},
           {"frames_min", settings.rest.frames_min},
           {"rest_gap_max_ns", settings.rest.gap_max.nanoseconds},
-          {"partial_noise", settings.partial_noise},
-          {"briskest_frames", settings.briskest_frames},
+          {"partial_noise", settings.partial_visibility_noise},
+          {"briskest_frames", settings.peak_scale_frames},
           {"gap_max_ns", settings.gap_max.nanoseconds}};
 }
 
 Json refine_json(const RefineSettings& settings) {
   return {{"steps_max", settings.steps_max},
-          {"left_out_max", settings.left_out_max},
-          {"left_out_steps_max", settings.left_out_steps_max},
-          {"markers_left_least", settings.markers_left_least}};
+          {"left_out_max", settings.rejected_max},
+          {"left_out_steps_max", settings.rejection_steps_max},
+          {"markers_left_least", settings.markers_kept_min}};
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ ExperimentRun make_run(sim::Scenario scenario, int judged, const ExperimentOptio
 
 sim::Scenario with_reference(sim::Scenario scenario) {
   sim::ToolBody board;
-  board.tool = reference_board();
+  board.tool = reference_body();
   scenario.tools.push_back(board);
   sim::lay_on_table(scenario, scenario.tools.size() - 1);
   return scenario;
@@ -53,11 +53,11 @@ ExperimentBars bars_of(ExperimentKind kind) {
 
 int missed_bars(const ExperimentResult& result) {
   const ExperimentBars bars = bars_of(result.kind);
-  const MethodFigures& held = result.glint_held;
+  const MethodFigures& referenced = result.glint_held;
   // Without a sample the mean is zero: no bar is met.
-  const bool any = held.samples > 0;
-  return (any && held.position_mm.summary.mean_abs <= bars.position_mm ? 0 : 1) +
-         (any && held.angle_deg.summary.mean_abs <= bars.angle_deg ? 0 : 1);
+  const bool any = referenced.samples > 0;
+  return (any && referenced.position_mm.summary.mean_abs <= bars.position_mm ? 0 : 1) +
+         (any && referenced.angle_deg.summary.mean_abs <= bars.angle_deg ? 0 : 1);
 }
 
 PublishedFigures published_figures(ExperimentKind kind) {
@@ -104,25 +104,26 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
   const Tool tool = runs.front().scenario.tools.front().tool;
   const sim::ReferenceSettings& judge = runs.front().scenario.reference;
   MethodRecord seed("seed", tool, judge), glint("glint", tool, judge),
-      held("glint, held to a board", tool, judge), perfect("a perfect tracker", tool, judge);
-  sim::SimFrame frame, with_board;
+      referenced("glint, held to a board", tool, judge), perfect("a perfect tracker", tool, judge);
+  sim::SimFrame frame, with_reference_body;
   for (const ExperimentRun& run : runs) {
-    const sim::Simulator simulator(run.scenario), board_simulator(with_reference(run.scenario));
-    SeedTracker seed_tracker(run.scenario.camera, tool);
+    const sim::Simulator simulator(run.scenario), reference_simulator(with_reference(run.scenario));
+    BaselineTracker seed_tracker(run.scenario.camera, tool);
     const HeadNoise noise;  // as shipped: the simulated headset differs
     GlintChain free_chain(run.scenario.camera, ChainSetup{{tool}, -1, noise});
-    GlintChain held_chain(run.scenario.camera, ChainSetup{{tool, reference_board()}, 1, noise});
+    GlintChain referenced_chain(run.scenario.camera,
+                                ChainSetup{{tool, reference_body()}, 1, noise});
     seed.begin_run();
     glint.begin_run();
-    held.begin_run();
+    referenced.begin_run();
     perfect.begin_run();
     result.path.reference_m.clear();
     const int end = std::min(run.skipped + run.aligning + run.judged, simulator.frame_count());
     for (int i = run.skipped; i < end; ++i) {
       simulator.render(i, frame);
-      board_simulator.render(i, with_board);
+      reference_simulator.render(i, with_reference_body);
       const auto seed_answer = timed([&]() -> Result<UncertainPose> {
-        const SeedResult answer = seed_tracker.process(frame.view(), frame.head);
+        const BaselineResult answer = seed_tracker.process(frame.view(), frame.head);
         const Pose T_tool_tip{Quaternion::Identity(), tool.tip_m};
         return {
             {{}, frame.head.T_world_camera * answer.T_camera_tool * T_tool_tip, Matrix6::Zero()},
@@ -135,12 +136,12 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
         });
       };
       const auto glint_answer = followed(free_chain, frame);
-      const auto held_answer = followed(held_chain, with_board);
+      const auto referenced_answer = followed(referenced_chain, with_reference_body);
       const bool aligning = i < run.skipped + run.aligning;
-      const auto take = aligning ? &MethodRecord::take_aligning : &MethodRecord::take_judged;
+      const auto take = aligning ? &MethodRecord::take_aligning : &MethodRecord::add_evaluated;
       (seed.*take)(frame, seed_answer.first, seed_answer.second);
       (glint.*take)(frame, glint_answer.first, glint_answer.second);
-      (held.*take)(with_board, held_answer.first, held_answer.second);
+      (referenced.*take)(with_reference_body, referenced_answer.first, referenced_answer.second);
       const Pose T_camera_tip = frame.truth.T_world_camera.inverse() *
                                 frame.truth.T_world_tool.front() *
                                 Pose{Quaternion::Identity(), tool.tip_m};
@@ -152,7 +153,7 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
   }
   result.seed = seed.figures();
   result.glint = glint.figures();
-  result.glint_held = held.figures();
+  result.glint_held = referenced.figures();
   result.perfect = perfect.figures();
   result.path.seed_m = seed.path_m();
   result.path.glint_m = glint.path_m();

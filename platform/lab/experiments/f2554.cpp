@@ -63,19 +63,19 @@ std::vector<TipPair> measured(const std::vector<Pose>& poses, const CaseOptions&
   return tips;
 }
 
-Pose resting() {
+Pose static_pose() {
   const sim::Scenario scenario = sim::still_run(hololens2_ahat());
   return scenario.tools[0].motion->pose(Time{});
 }
 
 // The tool rotated about its tip, which stays at `tip_world`.
-Pose turned(const Pose& rest, const Vector3& tip_tool, const Vector3& tip_world,
-            const Vector3& by_rad) {
+Pose rotated_about_tip(const Pose& rest, const Vector3& tip_tool, const Vector3& tip_world,
+                       const Vector3& by_rad) {
   const Quaternion rotation = (rest.rotation * from_rotation_vector(by_rad)).normalized();
   return {rotation, tip_world - rotation * tip_tool};
 }
 
-Figure lost(std::size_t poses, std::size_t found) {
+Figure frames_without_pose(std::size_t poses, std::size_t found) {
   return {"frames_without_pose", "", static_cast<double>(poses - found)};
 }
 
@@ -98,10 +98,10 @@ ExperimentCase point_case(const std::string& name, std::size_t poses,
           static_cast<std::int64_t>(tips.size()),
           {{"precision_rms", "mm", off.rms},
            {"precision_p95", "mm", percentile(off_mm, 0.95)},
-           {"precision_largest", "mm", off.greatest},
+           {"precision_largest", "mm", off.maximum},
            {"error_rms", "mm", error.rms},
-           {"error_largest", "mm", error.greatest},
-           lost(poses, tips.size())}};
+           {"error_largest", "mm", error.maximum},
+           frames_without_pose(poses, tips.size())}};
 }
 
 ExperimentCase distance_case(std::size_t poses, const std::vector<TipPair>& tips) {
@@ -122,7 +122,7 @@ ExperimentCase distance_case(std::size_t poses, const std::vector<TipPair>& tips
            {"error_rms", "mm", errors.rms},
            {"error_p95", "mm", percentile(sizes_mm, 0.95)},
            {"error_largest", "mm", percentile(sizes_mm, 1.0)},
-           lost(poses, tips.size())}};
+           frames_without_pose(poses, tips.size())}};
 }
 
 // Evenly spaced angles from one side to the other.
@@ -134,7 +134,7 @@ Vector3 grid_point(int i) { return k_grid_m * Vector3(i % 3 - 1, i / 3 % 3 - 1, 
 
 CaseList run_f2554(const CaseOptions& options) {
   const int count = options.quick ? k_quick_poses : k_poses;
-  const Pose rest = resting();
+  const Pose rest = static_pose();
   const Tool tool = sim::still_run(hololens2_ahat()).tools[0].tool;
   const Vector3 tip_world = rest * tool.tip_m;
   int done = 0;
@@ -149,14 +149,15 @@ CaseList run_f2554(const CaseOptions& options) {
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
     const Vector3 by = 0.5 * k_roll_rad * sim::gaussian_vector(key, static_cast<std::uint64_t>(i));
-    poses.push_back(turned(rest, tool.tip_m, tip_world, by));
+    poses.push_back(rotated_about_tip(rest, tool.tip_m, tip_world, by));
   }
   list.cases.push_back(point_case("single point", poses.size(), run(poses), &plots[0]));
   const char* names[] = {"rotation about x", "rotation about y", "rotation about z"};
   for (int axis = 0; axis < 3; ++axis) {
     poses.clear();
     for (int i = 0; i < count; ++i) {
-      poses.push_back(turned(rest, tool.tip_m, tip_world, swing(i, count) * Vector3::Unit(axis)));
+      poses.push_back(
+          rotated_about_tip(rest, tool.tip_m, tip_world, swing(i, count) * Vector3::Unit(axis)));
     }
     const auto at = static_cast<std::size_t>(axis);
     list.cases.push_back(point_case(names[at], poses.size(), run(poses), &plots[at + 1]));
@@ -165,7 +166,7 @@ CaseList run_f2554(const CaseOptions& options) {
   for (int i = 0; i < count; ++i) {
     const Vector3 by =
         0.2 * k_roll_rad * sim::gaussian_vector(key, static_cast<std::uint64_t>(1000 + i));
-    poses.push_back(turned(rest, tool.tip_m, tip_world + grid_point(i), by));
+    poses.push_back(rotated_about_tip(rest, tool.tip_m, tip_world + grid_point(i), by));
   }
   list.cases.push_back(distance_case(poses.size(), run(poses)));
 

@@ -50,7 +50,7 @@ double longest_side(const Tool& tool) {
 
 void take_lens(const Cell& drawn, double seconds, Cell& cell) {
   Recording board(drawn, cell, "field_board", seconds);
-  const BoardFit fit = calibrate_board(*board.frames.source, "field_board", {});
+  const CameraFit fit = calibrate_camera(*board.frames.source, "field_board", {});
   cell.camera.model = fit.model;
   cell.camera.uncertainty.principal_point_px = fit.principal_point_sigma_px;
   cell.camera.uncertainty.focal_scale = fit.focal_sigma;
@@ -68,7 +68,7 @@ void take_tool(const Cell& drawn, double seconds, Cell& cell) {
   std::vector<std::string> failures;
   const std::vector<PointFrame> points =
       recorded_points(turned.frames, drawn.tools.items[0], failures);
-  settings.slow_range_m = slow_range_of_mean(points, cell.camera);
+  settings.correlated_range_m = slow_range_of_mean(points, cell.camera);
   const ToolGeometry found = calibrate_tool(points, settings, "field_turn");
   Tool& tool = cell.tools.items[0];
   double squares = 0;
@@ -85,9 +85,9 @@ void take_ranges(const Cell& drawn, double seconds, Cell& cell) {
   const BlobSeries series = recorded_blobs(turned.frames, "");
   DepthCalibrationSettings settings;
   settings.brightness = Brightness::left_out;
-  const SightingSeries seen = find_tool(series, *series.tool, {});
+  const ObservationSeries seen = find_tool(series, *series.tool, {});
   const DepthCalibration found =
-      calibrate_depth(seen.sightings, *series.tool, settings, "field_turn");
+      calibrate_depth(seen.observations, *series.tool, settings, "field_turn");
   cell.camera.depth.bias = found.bias;
   state_range_uncertainty(std::sqrt(found.covariance(0, 0)), std::sqrt(found.covariance(1, 1)),
                           cell.camera.uncertainty);
@@ -113,8 +113,8 @@ void take_noise(const Cell& drawn, double seconds, Cell& cell) {
   const CameraUncertainty slow = marker_errors_of(found, cell, cell.tools.items[0],
                                                   series.poses[series.poses.size() / 2].pose);
   CameraUncertainty& sigma = cell.camera.uncertainty;
-  sigma.slow_range_m = slow.slow_range_m;
-  sigma.slow_centroid_px = slow.slow_centroid_px;
+  sigma.correlated_range_m = slow.correlated_range_m;
+  sigma.correlated_centroid_px = slow.correlated_centroid_px;
   sigma.fast_share = slow.fast_share;
   cell.camera.correlation = found.correlation;
 }

@@ -43,13 +43,13 @@ void correct_all(sim::Scenario& scenario, Cell& cell) {
   const double drift = drawn.rest_position_m / declared.rest_position_m;
   sim::DeviceErrors slow;
   slow.exists = true;
-  slow.slow_range_m = scenario.device.slow_range_m;
-  slow.slow_centroid_px = scenario.device.slow_centroid_px;
+  slow.correlated_range_m = scenario.device.correlated_range_m;
+  slow.correlated_centroid_px = scenario.device.correlated_centroid_px;
   slow.seed = scenario.device.seed;
   const CameraUncertainty shipped = cell.camera.uncertainty;
   state_exactly(cell);
-  cell.camera.uncertainty.slow_range_m = shipped.slow_range_m;
-  cell.camera.uncertainty.slow_centroid_px = shipped.slow_centroid_px;
+  cell.camera.uncertainty.correlated_range_m = shipped.correlated_range_m;
+  cell.camera.uncertainty.correlated_centroid_px = shipped.correlated_centroid_px;
   cell.camera.uncertainty.fast_share = shipped.fast_share;
   build_exactly(cell, scenario);
   scenario.device = slow;
@@ -61,7 +61,7 @@ void correct_all(sim::Scenario& scenario, Cell& cell) {
        {&stated.rest_position_m, &stated.rest_angle_rad, &stated.position_per_speed_s,
         &stated.position_per_turn_m, &stated.angle_per_speed_s_m, &stated.angle_per_turn_s})
     *part *= drift;
-  stated.stamp_s = 0;
+  stated.time_stamp_s = 0;
 }
 
 OutputErrors sum_of(const OutputErrors& a, const OutputErrors& b) {
@@ -84,7 +84,7 @@ FieldRun run_of(FieldDevice device, std::uint64_t seed, double duration_s,
   run.device = device;
   run.seed = seed;
   run.duration_s = duration_s;
-  for (const RateFigures& rate : result.by_rate->tools[0]) {
+  for (const RateStatistics& rate : result.by_rate->tools[0]) {
     run.ticks += rate.ticks;
     run.measured = sum_of(run.measured, rate.of_measured);
     run.predicted = sum_of(run.predicted, rate.of_predicted);

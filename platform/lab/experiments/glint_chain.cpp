@@ -32,7 +32,7 @@ Result<Pose> GlintChain::process(const Frame& frame, const HeadPose& head) {
   const Estimates& estimates = tracker_->output<Estimates>();
   if (!estimates.verdict.usable()) return {{}, estimates.verdict.reason};
   const Track& track = estimates.tracks[0];
-  if (!track.seen_now) return {{}, track.reason};
+  if (!track.measured_now) return {{}, track.reason};
   return {track.T_camera_tool};
 }
 
@@ -40,7 +40,7 @@ Result<UncertainPose> GlintChain::followed() const {
   const Estimates& estimates = tracker_->output<Estimates>();
   const Track& track = estimates.tracks[0];
   if (!estimates.verdict.usable()) return {{}, estimates.verdict.reason};
-  if (!track.seen_now) return {{}, track.reason};
+  if (!track.measured_now) return {{}, track.reason};
   if (track.base != ReferenceFrame::world) return {{}, Reason::head_pose_missing};
   UncertainPose tip = pose_of(track.motion);
   const Vector3 arm = tip.pose.rotation * estimates.tips[0].arm_m;

@@ -32,8 +32,8 @@ void one_start(const std::vector<Vector3>& model, const PointNoise& noise, LagEr
   const Pose start = held_pose(k_lag_tilt_rad, noise.seed, noise.run);
   const Vector3 ahead = direction(noise.seed, noise.run, 1);
   const Vector3 axis = direction(noise.seed, noise.run, 2);
-  const Quaternion along = turn_between(ahead, Vector3::UnitX());
-  const Quaternion about = turn_between(axis, Vector3::UnitX());
+  const Quaternion along = rotation_between(ahead, Vector3::UnitX());
+  const Quaternion about = rotation_between(axis, Vector3::UnitX());
   for (int frame = 0; frame < k_still_frames + k_moving_frames; ++frame) {
     const int moving = frame - k_still_frames;
     const double seconds = std::max((frame_time(moving) - Time{}).seconds(), 0.0);

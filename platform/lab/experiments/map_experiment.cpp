@@ -42,12 +42,12 @@ CaseList run_map(const CaseOptions& options) {
   out.cases.push_back(
       {"all planes",
        "glint",
-       halves.snapped,
+       halves.projected,
        {{"planes", "", static_cast<double>(halves.planes.size()),
          Bar::at_least(static_cast<double>(k_planes_judged))},
-        {"moved_most", "mm", 1e3 * halves.moved_most_m,
+        {"moved_most", "mm", 1e3 * halves.displacement_max_m,
          Bar::at_most(1e3 * static_cast<double>(settings.planes.gate.threshold_m) + 1e-3)},
-        {"swallowed", "", halves.swallowed_part, Bar::at_most(0.02)}}});
+        {"swallowed", "", halves.wrong_normal_share, Bar::at_most(0.02)}}});
   return out;
 }
 

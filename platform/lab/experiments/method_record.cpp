@@ -42,8 +42,8 @@ void MethodRecord::take_aligning(const sim::SimFrame& frame, const Result<Uncert
   if (answer && frame.head.valid) aligning_.push_back(pair_of(frame, answer.value.pose));
 }
 
-void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
-                               double seconds) {
+void MethodRecord::add_evaluated(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
+                                 double seconds) {
   take_time(seconds);
   ++frames_;
   if (!answer || !frame.head.valid) {

@@ -22,7 +22,8 @@ class MethodRecord {
   // (zero if the method states none), or a reason.
   void take_aligning(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
                      double seconds);
-  void take_judged(const sim::SimFrame& frame, const Result<UncertainPose>& answer, double seconds);
+  void add_evaluated(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
+                     double seconds);
 
   [[nodiscard]] MethodFigures figures() const;
   // Tip positions in the reference's frame, one per judged frame of the current run; not finite

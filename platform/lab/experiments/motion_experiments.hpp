@@ -7,7 +7,7 @@
 namespace glint {
 
 // Pose of a tool that has come to rest, half a second and two seconds later.
-[[nodiscard]] CaseList run_rest(const CaseOptions& options);
+[[nodiscard]] CaseList run_static_tool(const CaseOptions& options);
 
 // Lag of the estimate of a tool that starts from rest, at once with 0.5 m/s and 90 deg/s.
 [[nodiscard]] CaseList run_lag(const CaseOptions& options);

@@ -28,7 +28,7 @@ struct NoiseCase {
   Knowledge knowledge;
 };
 
-SightNoise noise_of(const NoiseCase& c) { return {k_pixel_sigma_px, c.sigma_m}; }
+ObservationNoise noise_of(const NoiseCase& c) { return {k_pixel_sigma_px, c.sigma_m}; }
 
 std::string name_of(const NoiseCase& c) {
   std::array<char, 96> text;
@@ -52,7 +52,7 @@ struct NoiseTally {
     }
     wrong += other ? 1 : 0;
     const double tip_m = (pose * tool.tip_m - truth * tool.tip_m).norm();
-    gross += is_gross({tip_m, turned_by(pose, truth), tip_sigma_m, other}) ? 1 : 0;
+    gross += is_gross({tip_m, rotation_between_rad(pose, truth), tip_sigma_m, other}) ? 1 : 0;
   }
 };
 

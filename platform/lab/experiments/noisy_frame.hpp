@@ -8,7 +8,7 @@ namespace glint {
 
 struct NoisyScene {
   const PointTool& tool;
-  SightNoise noise;
+  ObservationNoise noise;
   int strays = 0;
 };
 

@@ -32,7 +32,8 @@ struct Disc {
   double radius_px = 0;
 };
 
-std::vector<Disc> markers_in(const Camera& camera, const ToolSet& tools, const FrameTruth& truth) {
+std::vector<Disc> markers_in(const Camera& camera, const ToolSet& tools,
+                             const FrameGroundTruth& truth) {
   std::vector<Disc> discs;
   const Pose T_camera_world = truth.T_world_camera.inverse();
   int lens_steps = 0;
@@ -106,8 +107,8 @@ int PaintedSpots::paint(const ToolSet& tools, sim::SimFrame& frame) const {
       for (int column = std::max(middle_x - reach, 0);
            column <= std::min(middle_x + reach, pixels.width - 1); ++column) {
         const double dx = column + 0.5 - x, dy = row + 0.5 - y;
-        const bool is_middle = column == middle_x && row == middle_y;
-        if (single ? !is_middle : dx * dx + dy * dy > spot.radius_px * spot.radius_px) continue;
+        const bool is_centre = column == middle_x && row == middle_y;
+        if (single ? !is_centre : dx * dx + dy * dy > spot.radius_px * spot.radius_px) continue;
         const auto at = static_cast<std::size_t>(row * pixels.width + column);
         pixels.reflectivity_16[at] = spot.level;
         if (!single) pixels.depth[at] = spot.depth;

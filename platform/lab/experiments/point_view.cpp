@@ -75,9 +75,9 @@ Camera ahat_ray_table() {
   return camera;
 }
 
-MarkerVariance SightNoise::variance() const {
+MarkerVariance ObservationNoise::variance() const {
   const double pixel = pixel_px * pixel_px;
-  const double range = std::max(range_m, k_range_sigma_least_m);
+  const double range = std::max(range_m, k_range_sigma_min_m);
   return {pixel, 0, pixel, range * range};
 }
 
@@ -95,9 +95,9 @@ DrawnPose draw_pose(const PointTool& tool, double range_m, double tilt_rad,
   const double tilt_axis = numbers.within(0, full), spin = numbers.within(0, full);
   const Vector3 sight =
       from_rotation_vector(off * Vector3(std::cos(side), std::sin(side), 0)) * Vector3::UnitZ();
-  const Quaternion facing = turn_between(tool.normal, -Vector3::UnitZ());
+  const Quaternion facing = rotation_between(tool.normal, -Vector3::UnitZ());
   const Quaternion turned = from_rotation_vector(Vector3(0, 0, spin)) * facing;
-  const Quaternion towards = turn_between(Vector3::UnitZ(), sight);
+  const Quaternion towards = rotation_between(Vector3::UnitZ(), sight);
   const Vector3 mean = marker_mean(tool.tool);
   const auto tilted_by = [&](double tilt) {
     const Vector3 axis(std::cos(tilt_axis), std::sin(tilt_axis), 0);
@@ -115,7 +115,7 @@ void PointView::clear() {
 }
 
 bool PointView::add(const Camera& camera, const Tool& tool, const Vector3& centre, int label,
-                    const SightNoise& noise, SampleNumbers& numbers) {
+                    const ObservationNoise& noise, SampleNumbers& numbers) {
   const double right = numbers.normal(), down = numbers.normal(), away = numbers.normal();
   const Result<Vector2> pixel = project(camera.model, centre);
   if (!pixel || markers.count >= k_blobs_max) return false;
@@ -151,7 +151,7 @@ void PointView::shuffle(SampleNumbers& numbers) {
   }
 }
 
-double turned_by(const Pose& a, const Pose& b) {
+double rotation_between_rad(const Pose& a, const Pose& b) {
   return rotation_vector(a.rotation * b.rotation.conjugate()).norm();
 }
 

@@ -34,7 +34,7 @@ struct PointTool {
 // AHAT with its lens as a table of rays at pixel centres, as on the device.
 [[nodiscard]] Camera ahat_ray_table();
 
-struct SightNoise {
+struct ObservationNoise {
   double pixel_px = 0.1;  // per axis
   double range_m = 0.001;
   // Declared variance; the range's sigma has a minimum, as an estimator's sigma is never zero.
@@ -71,17 +71,17 @@ struct DrawnPose {
 // Markers of one frame, with their local rays and variances.
 struct PointView {
   Markers markers;
-  MarkerSights sights;
+  MarkerObservations sights;
   std::array<std::int16_t, k_markers_per_tool_max> truth{};  // index per tool marker, -1: none
 
   void clear();
   // Returns false outside the lens or beyond k_blobs_max. `label` -1: a false marker.
   bool add(const Camera& camera, const Tool& tool, const Vector3& centre, int label,
-           const SightNoise& noise, SampleNumbers& numbers);
+           const ObservationNoise& noise, SampleNumbers& numbers);
   void shuffle(SampleNumbers& numbers);
 };
 
 // Returns the angle between the two rotations, radians.
-[[nodiscard]] double turned_by(const Pose& a, const Pose& b);
+[[nodiscard]] double rotation_between_rad(const Pose& a, const Pose& b);
 
 }  // namespace glint

@@ -17,14 +17,15 @@ constexpr std::array<const char*, 2> k_ahead = {"25 ms", "50 ms"};
 const std::vector<Duration> k_horizons = {milliseconds(25), milliseconds(50)};
 
 // Limits of Glint's error relative to linear + SLERP and to the best baseline predictor.
-struct Shares {
+struct ErrorRatios {
   double position_of_linear, rotation_of_linear;
   double position_of_best, rotation_of_best;
 };
-constexpr std::array<Shares, k_recordings.size()> k_shares = {{{0.70, 0.58, 0.93, 1.08},
-                                                               {0.70, 0.58, 0.93, 1.00},
-                                                               {0.80, 0.58, 0.93, 1.02},
-                                                               {0.70, 0.70, 0.93, 1.00}}};
+constexpr std::array<ErrorRatios, k_recordings.size()> k_error_ratios = {
+    {{0.70, 0.58, 0.93, 1.08},
+     {0.70, 0.58, 0.93, 1.00},
+     {0.80, 0.58, 0.93, 1.02},
+     {0.70, 0.70, 0.93, 1.00}}};
 
 const std::vector<NamedPredictor>& rivals() {
   static const std::vector<NamedPredictor> k_rivals = {
@@ -47,22 +48,22 @@ ExperimentCase case_of(const char* recording, std::size_t h, const std::string& 
            {"rotation_rms", "deg", k_degrees_per_radian * errors[h].rotation_rms_rad, {}}}};
 }
 
-void add_ratios(ExperimentCase& glint, const Shares& shares, const PredictionError& own,
+void add_ratios(ExperimentCase& glint, const ErrorRatios& ratios, const PredictionError& own,
                 const std::vector<HorizonErrors>& others, std::size_t h, bool judged) {
   double position = others[0][h].position_rms_m, rotation = others[0][h].rotation_rms_rad;
   const auto bar = [&](double limit) { return judged ? Bar::at_most(limit) : Bar::none(); };
   glint.figures.push_back(
-      {"position_of_linear", "", own.position_rms_m / position, bar(shares.position_of_linear)});
+      {"position_of_linear", "", own.position_rms_m / position, bar(ratios.position_of_linear)});
   glint.figures.push_back(
-      {"rotation_of_linear", "", own.rotation_rms_rad / rotation, bar(shares.rotation_of_linear)});
+      {"rotation_of_linear", "", own.rotation_rms_rad / rotation, bar(ratios.rotation_of_linear)});
   for (const HorizonErrors& other : others) {
     position = std::min(position, other[h].position_rms_m);
     rotation = std::min(rotation, other[h].rotation_rms_rad);
   }
   glint.figures.push_back(
-      {"position_of_best", "", own.position_rms_m / position, bar(shares.position_of_best)});
+      {"position_of_best", "", own.position_rms_m / position, bar(ratios.position_of_best)});
   glint.figures.push_back(
-      {"rotation_of_best", "", own.rotation_rms_rad / rotation, bar(shares.rotation_of_best)});
+      {"rotation_of_best", "", own.rotation_rms_rad / rotation, bar(ratios.rotation_of_best)});
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ CaseList run_prediction(const CaseOptions& options) {
       others.push_back(prediction_errors(measured, *rival.make(), k_horizons, settings));
     for (std::size_t h = 0; h < k_horizons.size(); ++h) {
       list.cases.push_back(case_of(k_recordings[i].name, h, "glint", own));
-      add_ratios(list.cases.back(), k_shares[i], own[h], others, h, !options.quick);
+      add_ratios(list.cases.back(), k_error_ratios[i], own[h], others, h, !options.quick);
       for (std::size_t k = 0; k < others.size(); ++k)
         list.cases.push_back(case_of(k_recordings[i].name, h, rivals()[k].name, others[k]));
     }

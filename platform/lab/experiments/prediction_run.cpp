@@ -11,18 +11,18 @@ namespace {
 // Ground truth is valid only between recorded samples that are at most this far apart.
 constexpr Duration k_gap_max = milliseconds(100);
 
-bool recorded_near(const Trajectory& truth, Time time) {
+bool has_ground_truth(const Trajectory& truth, Time time) {
   const auto& samples = truth.samples;
   const auto after =
       std::lower_bound(samples.begin(), samples.end(), time,
-                       [](const StampedPose& sample, Time t) { return sample.time < t; });
+                       [](const TimedPose& sample, Time t) { return sample.time < t; });
   if (after == samples.begin() || after == samples.end()) return false;
   return after->time - (after - 1)->time <= k_gap_max;
 }
 
 }  // namespace
 
-bool Judged::operator()(Time time) {
+bool EvaluationWindow::operator()(Time time) {
   if (time - last_ > k_gap_max) from_ = time + warm_up_;
   last_ = time;
   return time >= from_;
@@ -36,7 +36,7 @@ NoisyRecording noisy(Trajectory truth, const PredictionSettings& settings, std::
   const double rr = settings.rotation_sigma_rad * settings.rotation_sigma_rad;
   std::uint64_t frame = 0;
   for (Time t; t <= Time{recording.truth.length().nanoseconds}; t = t + settings.period, ++frame) {
-    if (!recorded_near(recording.truth, t)) continue;
+    if (!has_ground_truth(recording.truth, t)) continue;
     UncertainPose measured;
     measured.time = t;
     const Pose pose = interpolated(recording.truth, t);
@@ -57,13 +57,13 @@ std::vector<PredictionError> prediction_errors(const NoisyRecording& recording,
                                                const std::vector<Duration>& horizons,
                                                const PredictionSettings& settings) {
   std::vector<PredictionError> errors(horizons.size());
-  Judged judged(settings.warm_up);
+  EvaluationWindow is_evaluated(settings.warm_up);
   for (const UncertainPose& measured : recording.measured) {
     predictor.update(measured);
-    if (!judged(measured.time)) continue;
+    if (!is_evaluated(measured.time)) continue;
     for (std::size_t h = 0; h < horizons.size(); ++h) {
       const Time target = measured.time + horizons[h];
-      if (!recorded_near(recording.truth, target)) continue;
+      if (!has_ground_truth(recording.truth, target)) continue;
       const Pose truth = interpolated(recording.truth, target);
       const Pose predicted = predictor.predict(target);
       errors[h].position_rms_m += (predicted.translation - truth.translation).squaredNorm();

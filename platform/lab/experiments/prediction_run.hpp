@@ -24,9 +24,9 @@ struct NoisyRecording {
 
 // Whether a measurement is judged: from `warm_up` on after the start and after each gap of the
 // recording.
-class Judged {
+class EvaluationWindow {
  public:
-  explicit Judged(Duration warm_up) : warm_up_(warm_up), from_(Time{} + warm_up) {}
+  explicit EvaluationWindow(Duration warm_up) : warm_up_(warm_up), from_(Time{} + warm_up) {}
   // Call with the time of each measurement, in order.
   [[nodiscard]] bool operator()(Time time);
 

@@ -11,7 +11,7 @@ constexpr int k_rates_runs = 100, k_rates_runs_quick = 2;
 
 struct RatesCase {
   const char* name;
-  Mishaps mishaps;
+  FrameFaults faults;
 };
 
 std::array<RatesCase, 6> cases() {
@@ -21,12 +21,12 @@ std::array<RatesCase, 6> cases() {
                                      {"10 % stamped backwards", {}},
                                      {"jitter", {}},
                                      {"all of these and 10 % late", {}}}};
-  cases[1].mishaps.dropped = 0.1;
-  cases[2].mishaps.doubled = 0.1;
-  cases[3].mishaps.backward = 0.1;
-  cases[4].mishaps.exposure_jitter = milliseconds(3);
-  cases[4].mishaps.transport_jitter = milliseconds(8);
-  cases[5].mishaps = {0.1, 0.1, 0.1, 0.1, milliseconds(3), milliseconds(8)};
+  cases[1].faults.dropped = 0.1;
+  cases[2].faults.duplicated = 0.1;
+  cases[3].faults.backward = 0.1;
+  cases[4].faults.exposure_jitter = milliseconds(3);
+  cases[4].faults.transport_jitter = milliseconds(8);
+  cases[5].faults = {0.1, 0.1, 0.1, 0.1, milliseconds(3), milliseconds(8)};
   return cases;
 }
 
@@ -40,12 +40,12 @@ std::vector<Figure> consistency_figures(const Consistency& consistency, bool jud
 }
 
 ExperimentCase graph_case(const std::string& name, const GraphTally& graph) {
-  const double right = static_cast<double>(graph.states_right) / static_cast<double>(graph.ticks);
+  const double right = static_cast<double>(graph.states_correct) / static_cast<double>(graph.ticks);
   return {name,
           "graph",
           graph.ticks,
           {{"states_right", "%", 100 * right, Bar::at_least(100)},
-           {"age_error_most", "ms", 1e-6 * static_cast<double>(graph.age_error_most_ns),
+           {"age_error_most", "ms", 1e-6 * static_cast<double>(graph.age_error_max_ns),
             Bar::at_most(0)},
            {"nees_over_6", "", graph.tip.nees_per_axis()},
            {"inside_95", "%", graph.tip.inside_95_percent()}}};
@@ -60,7 +60,7 @@ CaseList run_rates(const CaseOptions& options) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     RatesTally tally;
     for (int run = 0; run < runs; ++run)
-      follow_rates({all[k].mishaps, options.seed, static_cast<std::uint64_t>(run)}, tally);
+      follow_rates({all[k].faults, options.seed, static_cast<std::uint64_t>(run)}, tally);
     for (const Rate rate : {Rate::fast, Rate::slow}) {
       const auto r = static_cast<std::size_t>(rate);
       const std::string name = std::string(rate == Rate::fast ? "45 Hz, " : "5 Hz, ") + all[k].name;
@@ -71,9 +71,9 @@ CaseList run_rates(const CaseOptions& options) {
     list.cases.push_back(
         {std::string("both, ") + all[k].name,
          "both",
-         tally.accepted + tally.refused,
-         {{"refused", "", static_cast<double>(tally.refused)},
-          {"refused_changed", "", static_cast<double>(tally.refused_changed), Bar::at_most(0)},
+         tally.accepted + tally.rejected,
+         {{"refused", "", static_cast<double>(tally.rejected)},
+          {"refused_changed", "", static_cast<double>(tally.rejected_changed), Bar::at_most(0)},
           {"frames_to_measured", "", static_cast<double>(tally.frames_to_measured),
            Bar::at_most(1)}}});
     if (options.progress) options.progress(static_cast<int>(k) + 1, static_cast<int>(all.size()));

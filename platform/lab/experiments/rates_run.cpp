@@ -27,7 +27,7 @@ constexpr double k_rates_tilt_rad = 0.5;
 constexpr std::uint64_t k_view_case = 3000;  // case number of the random numbers
 
 // The pen, with the mean of its markers as origin.
-Tool middle_pen() {
+Tool centred_pen() {
   Tool tool = five_marker_pen().tool;
   const Vector3 mean = marker_mean(tool);
   for (Vector3& marker : tool.markers_m) marker -= mean;
@@ -52,9 +52,9 @@ std::vector<std::byte> bytes_of(const State& state) {
   return bytes;
 }
 
-class MotionWay {
+class MotionChain {
  public:
-  MotionWay(const RatesRun& run, const Tool& tool) : run_(run) {
+  MotionChain(const RatesRun& run, const Tool& tool) : run_(run) {
     motion_.settings = EstimatorSettings{}.motion;
     if (integrator_.prepare(motion_.settings.motion) != Reason::none)
       throw std::runtime_error("SUNDIALS could not be prepared: no memory");
@@ -64,7 +64,7 @@ class MotionWay {
   void frame(const sim::FrameTiming& timing, const Pose& truth, RatesTally& tally) {
     FrameVerdict verdict;
     check_({timing.mid_exposure, {}, timing.arrival, timing.sequence + 1, Reason::none}, verdict);
-    ++(verdict.usable() ? tally.accepted : tally.refused);
+    ++(verdict.usable() ? tally.accepted : tally.rejected);
     Result<UncertainPose> measured =
         measure(camera_, model_, truth, {1, run_.seed, run_.run}, timing.sequence);
     if (!measured) return;
@@ -76,7 +76,7 @@ class MotionWay {
     // The filter itself must reject what the node has rejected.
     const std::vector<std::byte> before = bytes_of(motion_);
     (void)motion_.update(measured.value);
-    if (bytes_of(motion_) != before) ++tally.refused_changed;
+    if (bytes_of(motion_) != before) ++tally.rejected_changed;
   }
 
   void tick(Time time, const Pose& truth, Consistency& consistency) {
@@ -108,9 +108,9 @@ bool same(const PoseSample& a, const PoseSample& b) {
          std::memcmp(a.covariance.data(), b.covariance.data(), 36 * sizeof(double)) == 0;
 }
 
-class GraphWay {
+class GraphChain {
  public:
-  GraphWay(const RatesRun& run, const Tool& tool)
+  GraphChain(const RatesRun& run, const Tool& tool)
       : tool_(tool), camera_(hololens2_ahat()), run_(run) {
     Cell cell = default_cell();
     set_camera(cell, camera_);
@@ -128,7 +128,7 @@ class GraphWay {
     view_->clear();
     for (int i = 0; i < tool_.marker_count; ++i) {
       const Vector3 place = truth * tool_.markers_m[static_cast<std::size_t>(i)];
-      (void)view_->add(camera_, tool_, place, i, SightNoise{}, numbers);
+      (void)view_->add(camera_, tool_, place, i, ObservationNoise{}, numbers);
     }
     const PoseSample before = sample(next_tick);
     tracker_->input<FrameStamp>() = {
@@ -137,7 +137,7 @@ class GraphWay {
     tracker_->activate();
     const Estimates& estimates = tracker_->output<Estimates>();
     output_->latest<Estimates>().set(estimates, ++version_, 0);
-    if (!estimates.verdict.usable() && !same(before, sample(next_tick))) ++tally.refused_changed;
+    if (!estimates.verdict.usable() && !same(before, sample(next_tick))) ++tally.rejected_changed;
     const Duration age = next_tick - timing.mid_exposure;
     if (estimates.verdict.usable() && fresh(age, camera_.period)) ++frames_unmeasured_;
   }
@@ -146,7 +146,7 @@ class GraphWay {
   void tick(Time time, Time newest, const Pose& truth, GraphTally& graph, RatesTally& tally) {
     const PoseSample now = sample(time);
     ++graph.ticks;
-    graph.states_right += now.state == right_state(time, newest, camera_.period) ? 1 : 0;
+    graph.states_correct += now.state == expected_state(time, newest, camera_.period) ? 1 : 0;
     const bool measured = now.state == TrackState::measured;
     if (measured && !was_measured_)
       tally.frames_to_measured = std::max(tally.frames_to_measured, frames_unmeasured_);
@@ -154,7 +154,7 @@ class GraphWay {
     was_measured_ = measured;
     if (!now.has_pose()) return;
     const std::int64_t age_error = now.age().nanoseconds - (time - newest).nanoseconds;
-    graph.age_error_most_ns = std::max(graph.age_error_most_ns, std::abs(age_error));
+    graph.age_error_max_ns = std::max(graph.age_error_max_ns, std::abs(age_error));
     const Pose tip{truth.rotation, truth * tool_.tip_m};
     graph.tip.add({time, now.pose, now.covariance}, tip);
   }
@@ -165,7 +165,7 @@ class GraphWay {
   }
 
   // Expected track state, from the schedule alone.
-  static TrackState right_state(Time time, Time newest, Duration period) {
+  static TrackState expected_state(Time time, Time newest, Duration period) {
     if (newest == k_never) return TrackState::none;
     if (fresh(time - newest, period)) return TrackState::measured;
     return time - newest <= k_lost_after ? TrackState::predicted : TrackState::lost;
@@ -192,12 +192,12 @@ class GraphWay {
 
 void follow_rates(const RatesRun& run, RatesTally& tally) {
   const Camera camera = hololens2_ahat();
-  const Tool tool = middle_pen();
+  const Tool tool = centred_pen();
   const sim::MotionPointer hand = hand_of(run);
   const std::vector<sim::FrameTiming> frames =
-      rates_schedule(camera, run.mishaps, run.seed * 1000 + run.run);
-  MotionWay motion(run, tool);
-  GraphWay graph(run, tool);
+      rates_schedule(camera, run.faults, run.seed * 1000 + run.run);
+  MotionChain motion(run, tool);
+  GraphChain graph(run, tool);
   Time newest = k_never;
   std::size_t next = 0;
   for (Time time; time < Time{} + k_rates_length; time = time + k_tick) {

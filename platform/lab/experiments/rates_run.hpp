@@ -17,9 +17,9 @@
 namespace glint {
 
 struct GraphTally {
-  std::int64_t ticks = 0, states_right = 0;
-  std::int64_t age_error_most_ns = 0;  // stated age against that of the frame it is based on
-  Consistency tip;                     // of the sample's pose, with its stated covariance
+  std::int64_t ticks = 0, states_correct = 0;
+  std::int64_t age_error_max_ns = 0;  // stated age against that of the frame it is based on
+  Consistency tip;                    // of the sample's pose, with its stated covariance
 };
 
 enum class Rate { fast, slow };
@@ -27,14 +27,14 @@ enum class Rate { fast, slow };
 struct RatesTally {
   std::array<GraphTally, 2> graph;    // by Rate of the tick
   std::array<Consistency, 2> motion;  // of the markers' mean
-  std::int64_t accepted = 0, refused = 0;
-  std::int64_t refused_changed = 0;  // rejected frames that changed an estimate
+  std::int64_t accepted = 0, rejected = 0;
+  std::int64_t rejected_changed = 0;  // rejected frames that changed an estimate
   // Largest number of fresh frames until a tool that was not measured is measured again.
   std::int64_t frames_to_measured = 0;
 };
 
 struct RatesRun {
-  Mishaps mishaps;
+  FrameFaults faults;
   std::uint64_t seed = 1, run = 0;
 };
 

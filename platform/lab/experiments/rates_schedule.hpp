@@ -13,9 +13,9 @@ inline constexpr Time k_slow_from{5'000'000'000}, k_slow_until{10'000'000'000};
 inline constexpr Duration k_rates_length = milliseconds(15'000);
 
 // Fractions of the frames; a frame has at most one fault.
-struct Mishaps {
+struct FrameFaults {
   double dropped = 0;
-  double doubled = 0;        // delivered again 5 ms later
+  double duplicated = 0;     // delivered again 5 ms later
   double backward = 0;       // stamped a second before its exposure, older than any kept frame
   double late = 0;           // 60 ms later; at 45 Hz after its successors
   Duration exposure_jitter;  // largest offset of an exposure and its stamp
@@ -24,7 +24,7 @@ struct Mishaps {
 
 // Returns the frames in order of arrival. The first frame has no fault.
 [[nodiscard]] std::vector<sim::FrameTiming> rates_schedule(const Camera& camera,
-                                                           const Mishaps& mishaps,
+                                                           const FrameFaults& faults,
                                                            std::uint64_t seed);
 
 }  // namespace glint

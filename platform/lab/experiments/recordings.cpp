@@ -12,9 +12,8 @@ std::vector<Trajectory> load_recordings(const CaseOptions& options) {
   for (const Recording& recording : k_recordings) {
     trajectories.push_back(load_trajectory(options.data + '/' + recording.file));
     if (options.quick)
-      std::erase_if(trajectories.back().samples, [](const StampedPose& sample) {
-        return sample.time > Time{} + k_quick_length;
-      });
+      std::erase_if(trajectories.back().samples,
+                    [](const TimedPose& sample) { return sample.time > Time{} + k_quick_length; });
   }
   return trajectories;
 }

@@ -17,14 +17,14 @@ namespace {
 constexpr int k_seeds = 200, k_seeds_quick = 3;
 constexpr int k_simulated = 60, k_simulated_quick = 3;
 
-struct Apart {
+struct PoseDistance {
   double mm = 0, degrees = 0;
   [[nodiscard]] bool within(double most_mm, double most_degrees) const {
     return mm <= most_mm && degrees <= most_degrees;
   }
 };
 
-Apart apart(const Pose& a, const Pose& b) {
+PoseDistance pose_distance(const Pose& a, const Pose& b) {
   return {
       1e3 * (a.translation - b.translation).norm(),
       k_degrees_per_radian * 2 * arc_cosine(std::min(1.0, std::abs(a.rotation.dot(b.rotation))))};
@@ -38,20 +38,20 @@ double median(std::vector<double> values) {
 
 // Converged poses relative to the best known pose, with their verdicts.
 struct ReferenceTally {
-  int runs = 0, accepted = 0, ambiguous = 0, right = 0, right_refused = 0, wrong_accepted = 0;
+  int runs = 0, accepted = 0, ambiguous = 0, right = 0, correct_rejected = 0, wrong_accepted = 0;
   std::vector<double> mm, degrees, sigma_mm, sigma_degrees;  // of all runs, against `truth`
 
   void add(const Reference& reference, const Pose& truth) {
     const ModelAlignment& alignment = reference.found.alignment;
-    const Apart off = apart(alignment.T_world_base, truth);
+    const PoseDistance off = pose_distance(alignment.T_world_base, truth);
     ++runs;
-    const bool good = reference.verdict == ReferenceVerdict::accepted;
-    accepted += good ? 1 : 0;
+    const bool is_accepted = reference.verdict == ReferenceVerdict::accepted;
+    accepted += is_accepted ? 1 : 0;
     ambiguous += reference.verdict == ReferenceVerdict::ambiguous ? 1 : 0;
-    const bool is_right = off.within(20, 2);
-    right += is_right ? 1 : 0;
-    right_refused += is_right && !good ? 1 : 0;
-    wrong_accepted += good && !off.within(40, 4) ? 1 : 0;
+    const bool is_correct = off.within(20, 2);
+    right += is_correct ? 1 : 0;
+    correct_rejected += is_correct && !is_accepted ? 1 : 0;
+    wrong_accepted += is_accepted && !off.within(40, 4) ? 1 : 0;
     mm.push_back(off.mm);
     degrees.push_back(off.degrees);
     sigma_mm.push_back(1e3 * std::sqrt(alignment.covariance.topLeftCorner<3, 3>().trace()));
@@ -59,7 +59,7 @@ struct ReferenceTally {
                             std::sqrt(alignment.covariance.bottomRightCorner<3, 3>().trace()));
   }
   [[nodiscard]] double right_refused_share() const {
-    return right > 0 ? 100.0 * right_refused / right : 0;
+    return right > 0 ? 100.0 * correct_rejected / right : 0;
   }
   [[nodiscard]] std::vector<Figure> verdicts(Bar right_refused_bar = Bar::at_most(2)) const {
     return {{"wrong_accepted", "", static_cast<double>(wrong_accepted), Bar::at_most(0)},
@@ -92,7 +92,7 @@ class Experiment {
  private:
   ModelAlignment optimum(const std::vector<SceneFrame>& frames) const {
     FindReferenceSettings alone;
-    alone.other_starts = false;
+    alone.search_alternatives = false;
     return find_reference(frames, scan_.published, alone).found.alignment;
   }
 
@@ -104,9 +104,9 @@ class Experiment {
     for (int i = 0; i < seeds_; ++i) {
       const Reference r = find_reference(frames, seed(0.1, 10, i), {});
       tally.add(r, scan_.published);
-      near_best += apart(r.found.alignment.T_world_base, best).within(5, 0.5) ? 1 : 0;
+      near_best += pose_distance(r.found.alignment.T_world_base, best).within(5, 0.5) ? 1 : 0;
       near_published +=
-          apart(r.found.alignment.T_world_base, scan_.published).within(20, 2) ? 1 : 0;
+          pose_distance(r.found.alignment.T_world_base, scan_.published).within(20, 2) ? 1 : 0;
       surface.push_back(1e3 * r.found.judgement.median_m);
       share.push_back(r.found.judgement.inlier_share());
     }
@@ -142,7 +142,7 @@ class Experiment {
 
   static double surface_mm(const std::vector<SceneFrame>& frames, const Pose& T) {
     FindReferenceSettings still;
-    still.other_starts = false;
+    still.search_alternatives = false;
     still.alignment.gate_count = 0;
     return 1e3 * find_reference(frames, T, still).found.judgement.median_m;
   }
@@ -166,7 +166,7 @@ class Experiment {
     ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i) {
       const Reference r = find_reference(one, seed(0.1, 10, i), {});
-      near_best += apart(r.found.alignment.T_world_base, best).within(10, 1) ? 1 : 0;
+      near_best += pose_distance(r.found.alignment.T_world_base, best).within(10, 1) ? 1 : 0;
       tally.add(r, scan_.published);
     }
     std::vector<Figure> figures = tally.verdicts();
@@ -187,7 +187,7 @@ class Experiment {
     for (int i = 0; i < seeds_; ++i) {
       const auto number = static_cast<std::uint64_t>(i);
       const SimulatedScene scene = simulate_scene(robot, settings, options_.seed, number);
-      const Pose start = start_about(scene.T_world_base, 0.4, 40, options_.seed, number);
+      const Pose start = initial_pose_near(scene.T_world_base, 0.4, 40, options_.seed, number);
       tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
     }
     add("ur5 straight up, seeds +-40 cm, 40 deg", seeds_, tally.verdicts());
@@ -220,7 +220,7 @@ class Experiment {
       for (SceneFrame& frame : scene.frames) {
         if (cloud != nullptr) frame.cloud = posed_cloud(*cloud, scene.positions, name);
       }
-      const Pose start = start_about(scene.T_world_base, 0.1, 10, options_.seed, instance);
+      const Pose start = initial_pose_near(scene.T_world_base, 0.1, 10, options_.seed, instance);
       tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
     }
     // One view without a mask is rejected if half of the robot is hidden, right or wrong.
@@ -241,8 +241,8 @@ class Experiment {
   }
 
   [[nodiscard]] Pose seed(double shift_m, double degrees, int number) const {
-    return start_about(scan_.published, shift_m, degrees, options_.seed,
-                       static_cast<std::uint64_t>(number));
+    return initial_pose_near(scan_.published, shift_m, degrees, options_.seed,
+                             static_cast<std::uint64_t>(number));
   }
 
   void add(const std::string& name, int n, std::vector<Figure> figures) {

@@ -28,7 +28,7 @@ struct TryScan {
 
 Pose best_pose(const RobotScan& scan) {
   FindReferenceSettings alone;
-  alone.other_starts = false;
+  alone.search_alternatives = false;
   return find_reference(scan.frames, scan.published, alone).found.alignment.T_world_base;
 }
 
@@ -92,15 +92,15 @@ TryResult run_try(const TryScan& all, std::uint64_t seed, int number) {
   const TryClass& kind = classes[static_cast<std::size_t>(number) % classes.size()];
   TryDraws draws(seed, number);
   const std::vector<SceneFrame> frames = frames_of(all, kind, draws);
-  const Pose start = start_about(all.best, kind.far ? 0.4 : 0.1, kind.far ? 40 : 10, seed,
-                                 static_cast<std::uint64_t>(number));
+  const Pose start = initial_pose_near(all.best, kind.far ? 0.4 : 0.1, kind.far ? 40 : 10, seed,
+                                       static_cast<std::uint64_t>(number));
   const std::clock_t before = std::clock();
   const Reference reference = find_reference(frames, start, {});
-  TryResult result{seed, number, name_of(reference.verdict), 0, 0, 0, 0, reference.why};
+  TryResult result{seed, number, name_of(reference.verdict), 0, 0, 0, 0, reference.reason};
   result.cpu_s = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   const ModelAlignment& end = reference.found.alignment;
-  result.shift_mm = 1e3 * (end.T_world_base.translation - all.best.translation).norm();
-  result.turn_deg =
+  result.translation_mm = 1e3 * (end.T_world_base.translation - all.best.translation).norm();
+  result.rotation_deg =
       k_degrees_per_radian * 2 *
       arc_cosine(std::min(1.0, std::abs(end.T_world_base.rotation.dot(all.best.rotation))));
   result.sigma_mm = 1e3 * std::sqrt(end.covariance.topLeftCorner<3, 3>().trace());
@@ -133,10 +133,10 @@ const std::vector<TryClass>& try_classes() {
 
 std::string try_line(const TryResult& result) {
   char numbers[160];
-  std::snprintf(numbers, sizeof numbers, ",%.2f,%.3f,%.2f,%.2f,", result.shift_mm, result.turn_deg,
-                result.sigma_mm, result.cpu_s);
+  std::snprintf(numbers, sizeof numbers, ",%.2f,%.3f,%.2f,%.2f,", result.translation_mm,
+                result.rotation_deg, result.sigma_mm, result.cpu_s);
   return std::to_string(result.seed) + "," + std::to_string(result.number) + "," + result.verdict +
-         numbers + result.why + "\n";
+         numbers + result.reason + "\n";
 }
 
 std::vector<TryResult> read_tries(const std::string& path, std::uint64_t seed) {
@@ -149,10 +149,10 @@ std::vector<TryResult> read_tries(const std::string& path, std::uint64_t seed) {
     char comma = 0;
     fields >> one.seed >> comma >> one.number >> comma;
     std::getline(fields, one.verdict, ',');
-    fields >> one.shift_mm >> comma >> one.turn_deg >> comma >> one.sigma_mm >> comma >>
+    fields >> one.translation_mm >> comma >> one.rotation_deg >> comma >> one.sigma_mm >> comma >>
         one.cpu_s >> comma;
     if (!fields || one.seed != seed || one.number < 0) continue;
-    std::getline(fields, one.why);
+    std::getline(fields, one.reason);
     tries.push_back(one);
   }
   return tries;
@@ -172,9 +172,9 @@ CaseList count_tries(const std::vector<TryResult>& tries) {
       if (one.verdict != "accepted") continue;
       // If the robot is not in the image, no pose is right.
       const bool there = classes[c].fault == TryFault::none || classes[c].fault == TryFault::joints;
-      right += there && one.right() ? 1 : 0;
-      wrong += !there || one.wrong() ? 1 : 0;
-      between += there && !one.right() && !one.wrong() ? 1 : 0;
+      right += there && one.is_right() ? 1 : 0;
+      wrong += !there || one.is_wrong() ? 1 : 0;
+      between += there && !one.is_right() && !one.is_wrong() ? 1 : 0;
     }
     if (count == 0) continue;
     const double accepted = 100.0 * (right + between) / count;

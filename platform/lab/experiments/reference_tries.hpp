@@ -30,13 +30,13 @@ struct TryResult {
   std::uint64_t seed = 0;
   int number = 0;  // index over all tries; its class is number % classes
   std::string verdict;
-  double shift_mm = 0, turn_deg = 0;  // from the best pose
-  double sigma_mm = 0;                // stated, of the position
+  double translation_mm = 0, rotation_deg = 0;  // from the best pose
+  double sigma_mm = 0;                          // stated, of the position
   double cpu_s = 0;
-  std::string why;  // reason for a verdict other than "accepted"
+  std::string reason;  // reason for a verdict other than "accepted"
 
-  [[nodiscard]] bool right() const { return shift_mm <= 25 && turn_deg <= 5; }
-  [[nodiscard]] bool wrong() const { return shift_mm > 50 || turn_deg > 10; }
+  [[nodiscard]] bool is_right() const { return translation_mm <= 25 && rotation_deg <= 5; }
+  [[nodiscard]] bool is_wrong() const { return translation_mm > 50 || rotation_deg > 10; }
 };
 
 // One line per try: seed,number,verdict,shift_mm,turn_deg,sigma_mm,cpu_s,why. A truncated line is

@@ -46,8 +46,8 @@ struct Results {
 };
 
 // One stroke that ends smoothly in the held pose, then rest.
-void one_rest(const std::vector<Vector3>& model, double tilt_rad, const PointNoise& noise,
-              Results& results) {
+void one_run(const std::vector<Vector3>& model, double tilt_rad, const PointNoise& noise,
+             Results& results) {
   const PointCamera camera;
   ToolMotion motion;
   motion.settings = EstimatorSettings{}.motion;
@@ -74,7 +74,7 @@ void one_rest(const std::vector<Vector3>& model, double tilt_rad, const PointNoi
 
 }  // namespace
 
-CaseList run_rest(const CaseOptions& options) {
+CaseList run_static_tool(const CaseOptions& options) {
   const int runs = options.quick ? k_rest_quick_runs : k_rest_runs;
   const std::vector<Vector3> model = tool_8700339();
   CaseList list{"rest", {}, {}};
@@ -82,8 +82,8 @@ CaseList run_rest(const CaseOptions& options) {
   for (const RestBars& bars : k_cases) {
     Results results;
     for (int run = 0; run < runs; ++run) {
-      one_rest(model, bars.tilt_deg / k_degrees_per_radian,
-               {1, options.seed, static_cast<std::uint64_t>(run)}, results);
+      one_run(model, bars.tilt_deg / k_degrees_per_radian,
+              {1, options.seed, static_cast<std::uint64_t>(run)}, results);
       if (options.progress) options.progress(++done, runs * static_cast<int>(k_cases.size()));
     }
     const std::string name =

@@ -65,22 +65,23 @@ Pose camera_at(const Vector3& target, double distance_m, double azimuth, double 
   return T_base_camera.inverse();
 }
 
-struct Picture {
+struct DepthRender {
   std::vector<float> z;
   std::vector<std::int32_t> face;
 };
 
-Picture rendered(const PosedSurface& surface, const Pose& T_camera_base, const Pinhole& camera) {
+DepthRender rendered(const PosedSurface& surface, const Pose& T_camera_base,
+                     const Pinhole& camera) {
   const auto pixels = static_cast<std::size_t>(camera.width * camera.height);
-  Picture picture{std::vector<float>(pixels), std::vector<std::int32_t>(pixels)};
+  DepthRender picture{std::vector<float>(pixels), std::vector<std::int32_t>(pixels)};
   std::vector<ProjectedCorner> corners(surface.corners.size());
   (void)render_depth(surface.surface(), T_camera_base, camera, {picture.z, picture.face, corners});
   return picture;
 }
 
 // Adds a panel between camera and robot, over the left half of the robot's pixels.
-void hide_half(PosedSurface& world, const Picture& robot, const Pinhole& camera,
-               const Pose& T_camera_base, double distance_m) {
+void occlude_half(PosedSurface& world, const DepthRender& robot, const Pinhole& camera,
+                  const Pose& T_camera_base, double distance_m) {
   std::vector<int> columns;
   for (std::size_t i = 0; i < robot.face.size(); ++i) {
     if (robot.face[i] >= 0) columns.push_back(static_cast<int>(i) % camera.width);
@@ -171,10 +172,10 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
     const Vector3 side(-flat.y(), flat.x(), 0);
     add_wall(world, target + 0.9 * flat - 3 * side - Vector3(0, 0, 3), 6 * side, {0, 0, 6});
     if (settings.half_hidden) {
-      hide_half(world, rendered(model, T_camera_base, camera), camera, T_camera_base,
-                settings.distance_m);
+      occlude_half(world, rendered(model, T_camera_base, camera), camera, T_camera_base,
+                   settings.distance_m);
     }
-    const Picture picture = rendered(world, T_camera_base, camera);
+    const DepthRender picture = rendered(world, T_camera_base, camera);
     SceneFrame frame;
     frame.camera = camera;
     frame.model = model;
@@ -198,13 +199,13 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
   return scene;
 }
 
-Pose start_about(const Pose& truth, double shift_m, double degrees, std::uint64_t seed,
-                 std::uint64_t number) {
+Pose initial_pose_near(const Pose& truth, double shift_m, double degrees, std::uint64_t seed,
+                       std::uint64_t number) {
   const sim::RandomKey key{seed, sim::Stream::reference, number};
   const auto draw = [&](std::uint64_t i) { return 2 * sim::uniform(key, i) - 1; };
   const double radians = degrees / k_degrees_per_radian;
   const Pose turn =
-      pose_of_seed({0, 0, 0, radians * draw(3), radians * draw(4), radians * draw(5)});
+      pose_from_xyz_rpy({0, 0, 0, radians * draw(3), radians * draw(4), radians * draw(5)});
   return {(turn.rotation * truth.rotation).normalized(),
           truth.translation + shift_m * Vector3(draw(0), draw(1), draw(2))};
 }

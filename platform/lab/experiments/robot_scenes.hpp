@@ -45,7 +45,7 @@ struct SimulationSettings {
 
 // Returns an initial pose: each coordinate within +-shift_m and, about fixed axes, +-degrees of the
 // true one.
-[[nodiscard]] Pose start_about(const Pose& truth, double shift_m, double degrees,
-                               std::uint64_t seed, std::uint64_t number);
+[[nodiscard]] Pose initial_pose_near(const Pose& truth, double shift_m, double degrees,
+                                     std::uint64_t seed, std::uint64_t number);
 
 }  // namespace glint

@@ -18,26 +18,27 @@ constexpr Duration k_sine_ahead = milliseconds(25);
 constexpr int k_sine_frames = 225, k_first_judged = 45;
 constexpr int k_sine_runs = 100, k_sine_quick_runs = 10;
 
-struct SineSwing {
+struct Oscillation {
   const char* name;
   int axis;
   double amplitude_m;
   double bar_mm;
 };
-constexpr SineSwing k_swings[] = {{"+-50 mm lateral", 0, 0.05, 1.8},
-                                  {"+-50 mm axial", 2, 0.05, 3.1},
-                                  {"+-25 mm lateral", 0, 0.025, 1.3},
-                                  {"+-25 mm axial", 2, 0.025, 2.2}};
+constexpr Oscillation k_swing_frames[] = {{"+-50 mm lateral", 0, 0.05, 1.8},
+                                          {"+-50 mm axial", 2, 0.05, 3.1},
+                                          {"+-25 mm lateral", 0, 0.025, 1.3},
+                                          {"+-25 mm axial", 2, 0.025, 2.2}};
 
-Pose swung(const Pose& middle, const SineSwing& swing, double phase, Time time) {
+Pose oscillated(const Pose& middle, const Oscillation& swing, double phase, Time time) {
   Pose pose = middle;
   const double angle = k_swing_rad_s * (time - Time{}).seconds() + phase;
   pose.translation[swing.axis] += swing.amplitude_m * sine_cosine(angle).sine;
   return pose;
 }
 
-ExperimentCase swing_case(const CaseOptions& options, const SineSwing& swing, const char* method,
-                          const std::function<PredictorPointer()>& make, Bar bar) {
+ExperimentCase oscillation_case(const CaseOptions& options, const Oscillation& swing,
+                                const char* method, const std::function<PredictorPointer()>& make,
+                                Bar bar) {
   const PointCamera camera;
   const std::vector<Vector3> model = tool_8700339();
   const int runs = options.quick ? k_sine_quick_runs : k_sine_runs;
@@ -50,13 +51,14 @@ ExperimentCase swing_case(const CaseOptions& options, const SineSwing& swing, co
     const PredictorPointer predictor = make();
     for (int frame = 0; frame < k_sine_frames; ++frame) {
       const Time time = frame_time(frame);
-      Result<UncertainPose> measured = measure(camera, model, swung(middle, swing, phase, time),
-                                               noise, static_cast<std::uint64_t>(frame));
+      Result<UncertainPose> measured =
+          measure(camera, model, oscillated(middle, swing, phase, time), noise,
+                  static_cast<std::uint64_t>(frame));
       if (!measured) continue;
       measured.value.time = time;
       predictor->update(measured.value);
       if (frame < k_first_judged) continue;
-      const Vector3 truth = swung(middle, swing, phase, time + k_sine_ahead).translation;
+      const Vector3 truth = oscillated(middle, swing, phase, time + k_sine_ahead).translation;
       squares += (predictor->predict(time + k_sine_ahead).translation - truth).squaredNorm();
       ++n;
     }
@@ -73,11 +75,11 @@ ExperimentCase swing_case(const CaseOptions& options, const SineSwing& swing, co
 CaseList run_sine(const CaseOptions& options) {
   CaseList list{"sine", {}, {}};
   const ToolMotionSettings settings = EstimatorSettings{}.motion;
-  for (const SineSwing& swing : k_swings) {
-    list.cases.push_back(swing_case(
+  for (const Oscillation& swing : k_swing_frames) {
+    list.cases.push_back(oscillation_case(
         options, swing, "glint", [&] { return std::make_unique<GlintPredictor>(settings); },
         Bar::at_most(swing.bar_mm)));
-    list.cases.push_back(swing_case(
+    list.cases.push_back(oscillation_case(
         options, swing, "linear + SLERP", [] { return make_linear_slerp(); }, Bar::none()));
   }
   return list;

@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_side_px = SpherePictures::k_side_px;
+constexpr int k_side_px = SphereImages::k_side_px;
 constexpr double k_wall_m = 0.95;  // behind the spheres
 // Off the axis in a direction along neither rows nor columns.
 constexpr double k_azimuth_rad = 0.6;
@@ -42,7 +42,7 @@ double range_of_diameter(double diameter_px, double focal_px, double radius_m) {
   return radius_m * std::sqrt(1 + tangent * tangent) / tangent;
 }
 
-SpherePictures::SpherePictures(const SphereSetting& setting, std::uint64_t seed)
+SphereImages::SphereImages(const SphereSetting& setting, std::uint64_t seed)
     : setting_(centred(setting)),
       seed_(seed),
       rays_(setting_.camera.model),
@@ -50,7 +50,7 @@ SpherePictures::SpherePictures(const SphereSetting& setting, std::uint64_t seed)
   planes_.resize(k_side_px, k_side_px);
 }
 
-void SpherePictures::draw_sphere(std::uint64_t number, const Vector2& pixel) {
+void SphereImages::draw_sphere(std::uint64_t number, const Vector2& pixel) {
   const CameraModel& model = setting_.camera.model;
   sim::Reflector sphere;
   sphere.centre = setting_.range_m * unproject(model, pixel).value;
@@ -69,7 +69,7 @@ void SpherePictures::draw_sphere(std::uint64_t number, const Vector2& pixel) {
   sim::draw(sphere, model, rays_, {}, planes_);
 }
 
-SpherePictures::Truth SpherePictures::render(std::uint64_t number, FrameBuffer& out) {
+SphereImages::Truth SphereImages::render(std::uint64_t number, FrameBuffer& out) {
   Truth truth;
   truth.centre_px =
       setting_.place_px + Vector2(uniform(seed_, number, 0), uniform(seed_, number, 1));
@@ -78,8 +78,8 @@ SpherePictures::Truth SpherePictures::render(std::uint64_t number, FrameBuffer& 
             static_cast<float>(setting_.background_counts));
   std::fill(planes_.range_m.begin(), planes_.range_m.end(), static_cast<float>(k_wall_m));
   draw_sphere(number, truth.centre_px);
-  if (setting_.other_px.squaredNorm() > 0) {
-    draw_sphere(number, truth.centre_px + setting_.other_px);
+  if (setting_.second_offset_px.squaredNorm() > 0) {
+    draw_sphere(number, truth.centre_px + setting_.second_offset_px);
   }
   sensor_.expose(planes_, rays_, static_cast<std::uint32_t>(number), out);
   return truth;

@@ -27,18 +27,18 @@ struct SphereSetting {
   double background_counts = 300;
   double limb = 0.6;         // fraction of the signal that remains at the limb
   Vector2 place_px{32, 32};  // the centre is up to a pixel beyond; the frame is k_side_px wide
-  Vector2 other_px{0, 0};    // offset of a second, equal sphere; 0: none
-  double smear_px = 0;       // motion during the exposure, in a random direction
-  sim::NoiseSettings noise;  // without its errors of whole blobs
+  Vector2 second_offset_px{0, 0};  // offset of a second, equal sphere; 0: none
+  double smear_px = 0;             // motion during the exposure, in a random direction
+  sim::NoiseSettings noise;        // without its errors of whole blobs
 };
 
 // Returns the range at which the image of an on-axis sphere has this diameter.
 [[nodiscard]] double range_of_diameter(double diameter_px, double focal_px, double radius_m);
 
-class SpherePictures {
+class SphereImages {
  public:
   static constexpr int k_side_px = 64;
-  SpherePictures(const SphereSetting& setting, std::uint64_t seed);
+  SphereImages(const SphereSetting& setting, std::uint64_t seed);
 
   struct Truth {
     Vector2 centre_px = Vector2::Zero();  // projection of the sphere's centre at mid-exposure

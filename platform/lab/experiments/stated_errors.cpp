@@ -29,43 +29,43 @@ void draw_below_one_sigma(const Cell& cell, LargeError large, std::uint64_t seed
   }
   if (large == LargeError::focal_length)
     device.focal_scale = (even() > 0 ? 1 : -1) * k_large_sigmas * stated.focal_scale;
-  scenario.timing.stamp_offset = {static_cast<std::int64_t>(1e9 * stated.stamp_s * even())};
+  scenario.timing.stamp_offset = {static_cast<std::int64_t>(1e9 * stated.time_stamp_s * even())};
   for (std::size_t t = 0; t < scenario.tools.size(); ++t) {
-    Tool& made = scenario.tools[t].tool;
-    const Tool& drawn = cell.tools.items[t];
+    Tool& actual = scenario.tools[t].tool;
+    const Tool& nominal = cell.tools.items[t];
     for (int axis = 0; axis < 3; ++axis)
-      made.tip_m(axis) = drawn.tip_m(axis) + even() * drawn.tip_sigma_m;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(made.marker_count); ++i) {
+      actual.tip_m(axis) = nominal.tip_m(axis) + even() * nominal.tip_sigma_m;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(actual.marker_count); ++i) {
       for (int axis = 0; axis < 3; ++axis) {
         const double sigmas =
             large == LargeError::tool_geometry ? k_large_sigmas * normal() : even();
-        made.markers_m[i](axis) = drawn.markers_m[i](axis) + sigmas * drawn.marker_sigma_m;
+        actual.markers_m[i](axis) = nominal.markers_m[i](axis) + sigmas * nominal.marker_sigma_m;
       }
     }
   }
-  const double time_s = std::hypot(stated.stamp_s, cell.head_noise.stamp_s);
+  const double time_s = std::hypot(stated.time_stamp_s, cell.head_noise.time_stamp_s);
   scenario.localisation.latency_s = large == LargeError::time_offset
                                         ? (even() > 0 ? 1 : -1) * k_large_sigmas * time_s
-                                        : cell.head_noise.stamp_s * even();
+                                        : cell.head_noise.time_stamp_s * even();
   const double drift = std::abs(even());
-  set_drift(large == LargeError::head_drift ? k_large_sigmas : drift, scenario.localisation);
+  set_drift_factor(large == LargeError::head_drift ? k_large_sigmas : drift, scenario.localisation);
 }
 
 void scale_drift(double factor, sim::LocalisationSettings& head) {
-  for (double* part :
-       {&head.rest_position_m, &head.rest_angle_rad, &head.position_per_speed_s,
-        &head.position_per_turn_m, &head.angle_per_speed_s_m, &head.angle_per_turn_s})
+  for (double* part : {&head.rest_position_m, &head.rest_angle_rad, &head.position_per_speed_s,
+                       &head.position_per_angular_speed_m, &head.angle_per_speed_s_m,
+                       &head.angle_per_angular_speed_s})
     *part *= factor;
 }
 
-void set_drift(double factor, sim::LocalisationSettings& head) {
+void set_drift_factor(double factor, sim::LocalisationSettings& head) {
   const sim::LocalisationSettings declared;
   head.rest_position_m = declared.rest_position_m;
   head.rest_angle_rad = declared.rest_angle_rad;
   head.position_per_speed_s = declared.position_per_speed_s;
-  head.position_per_turn_m = declared.position_per_turn_m;
+  head.position_per_angular_speed_m = declared.position_per_angular_speed_m;
   head.angle_per_speed_s_m = declared.angle_per_speed_s_m;
-  head.angle_per_turn_s = declared.angle_per_turn_s;
+  head.angle_per_angular_speed_s = declared.angle_per_angular_speed_s;
   scale_drift(factor, head);
 }
 

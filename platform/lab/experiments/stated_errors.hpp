@@ -30,6 +30,6 @@ void draw_below_one_sigma(const Cell& cell, LargeError large, std::uint64_t seed
 // Multiplies the headset's own error by this factor.
 void scale_drift(double factor, sim::LocalisationSettings& head);
 // Sets it to this factor times the declared one.
-void set_drift(double factor, sim::LocalisationSettings& head);
+void set_drift_factor(double factor, sim::LocalisationSettings& head);
 
 }  // namespace glint

@@ -43,11 +43,11 @@ sim::Scenario touching(const Cell& cell, const VerifyDevice& device) {
   } else {
     const double drift =
         scenario.localisation.rest_position_m / sim::LocalisationSettings{}.rest_position_m;
-    set_drift(std::min(drift, 1.0), scenario.localisation);
+    set_drift_factor(std::min(drift, 1.0), scenario.localisation);
   }
   scenario.timing.slow.clear();
   scenario.occlusions.clear();
-  scenario.aways.clear();
+  scenario.absences.clear();
   sim::touch_points({}, device.seed, scenario);
   return scenario;
 }
@@ -59,7 +59,7 @@ bool is_verdict(bool agrees, const VerifyDevice& device) {
   const sim::Simulator simulator(touching(cell, device));
   RecordedFrames recorded{"simulated touches", cell, std::make_unique<SimulatedSource>(simulator)};
   try {
-    const TipSeries series = sight_tips(recorded, 0);
+    const TipSeries series = observe_tips(recorded, 0);
     return verify_touches(series, {touches.distance_m(), k_distance_sigma_m}).agrees == agrees;
   } catch (const InputError&) {
     return false;

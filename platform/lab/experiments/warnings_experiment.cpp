@@ -20,21 +20,28 @@ struct WarningCase {
   const char* name;
   LargeError large;
   bool body;  // a static reference body is in view
-  int seeds, quick;
+  int seeds, quick_seeds;
   Bar bar;
 };
 constexpr int k_warning_case_count = 8;
-constexpr int k_few = 20, k_many = 40;
+constexpr int k_large_error_seeds = 20, k_small_error_seeds = 40;
 const std::array<WarningCase, k_warning_case_count> k_warning_cases = {
-    WarningCase{"below one sigma", LargeError::nothing, false, k_many, 2, Bar::at_most(2)},
-    WarningCase{"below one sigma, body", LargeError::nothing, true, k_many, 2, Bar::at_most(2)},
-    WarningCase{"range offset", LargeError::range_offset, false, k_few, 1, Bar::at_least(16)},
-    WarningCase{"tool geometry", LargeError::tool_geometry, false, k_few, 1, Bar::at_least(16)},
-    WarningCase{"principal point, body", LargeError::principal_point, true, k_few, 1,
+    WarningCase{"below one sigma", LargeError::nothing, false, k_small_error_seeds, 2,
+                Bar::at_most(2)},
+    WarningCase{"below one sigma, body", LargeError::nothing, true, k_small_error_seeds, 2,
+                Bar::at_most(2)},
+    WarningCase{"range offset", LargeError::range_offset, false, k_large_error_seeds, 1,
+                Bar::at_least(16)},
+    WarningCase{"tool geometry", LargeError::tool_geometry, false, k_large_error_seeds, 1,
+                Bar::at_least(16)},
+    WarningCase{"principal point, body", LargeError::principal_point, true, k_large_error_seeds, 1,
                 Bar::at_least(14)},
-    WarningCase{"focal length, body", LargeError::focal_length, true, k_few, 1, Bar::at_least(14)},
-    WarningCase{"time offset, body", LargeError::time_offset, true, k_few, 1, Bar::at_least(14)},
-    WarningCase{"headset drift, body", LargeError::head_drift, true, k_few, 1, Bar::at_least(14)}};
+    WarningCase{"focal length, body", LargeError::focal_length, true, k_large_error_seeds, 1,
+                Bar::at_least(14)},
+    WarningCase{"time offset, body", LargeError::time_offset, true, k_large_error_seeds, 1,
+                Bar::at_least(14)},
+    WarningCase{"headset drift, body", LargeError::head_drift, true, k_large_error_seeds, 1,
+                Bar::at_least(14)}};
 
 // Slow look around: the body moves across the image, which makes lens errors observable.
 sim::HeadSettings moving_head() {
@@ -49,7 +56,7 @@ sim::HeadSettings moving_head() {
 // Adds a reference body, fixed to the table.
 void add_reference_body(Cell& cell) {
   cell.reference = cell.tools.count;
-  cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = reference_board();
+  cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = reference_body();
 }
 
 std::vector<CalibrationFinding> findings_of(const WarningCase& one, std::uint64_t seed,
@@ -64,7 +71,7 @@ std::vector<CalibrationFinding> findings_of(const WarningCase& one, std::uint64_
   return run_simulated(cell, std::move(scenario), options).calibration;
 }
 
-bool is_of(ErrorSource found, LargeError large) {
+bool matches(ErrorSource found, LargeError large) {
   switch (large) {
     case LargeError::nothing:
       return true;
@@ -91,9 +98,9 @@ bool is_of(ErrorSource found, LargeError large) {
 CaseList run_warnings(const CaseOptions& options) {
   CaseList list{"warnings", {}, {}};
   int done = 0, all = 0;
-  for (const WarningCase& one : k_warning_cases) all += options.quick ? one.quick : one.seeds;
+  for (const WarningCase& one : k_warning_cases) all += options.quick ? one.quick_seeds : one.seeds;
   for (const WarningCase& one : k_warning_cases) {
-    const int seeds = options.quick ? one.quick : one.seeds;
+    const int seeds = options.quick ? one.quick_seeds : one.seeds;
     int named = 0, others = 0;
     double sigmas = 0;  // of the case's source, the largest
     for (int i = 0; i < seeds; ++i) {
@@ -101,10 +108,10 @@ CaseList run_warnings(const CaseOptions& options) {
                                         options.quick ? k_warned_quick_s : k_warned_s, options.out);
       bool this_named = false, other_named = false;
       for (const CalibrationFinding& finding : findings) {
-        const bool right = is_of(finding.source, one.large);
-        if (right) sigmas = std::max(sigmas, finding.stated_sigmas);
-        this_named = this_named || (right && finding.named);
-        other_named = other_named || (!right && finding.named);
+        const bool right = matches(finding.source, one.large);
+        if (right) sigmas = std::max(sigmas, finding.size_in_stated_sigmas);
+        this_named = this_named || (right && finding.exceeds_stated);
+        other_named = other_named || (!right && finding.exceeds_stated);
       }
       named += this_named ? 1 : 0;
       others += other_named ? 1 : 0;

@@ -15,7 +15,7 @@ void ClockMap::begin(Time stamp, Time arrival) noexcept {
   origin_ = stamp;
   base_ = arrival - stamp;
   bins_ = {};
-  slope_ = height_s_ = middle_s_ = 0;
+  slope_ = offset_s_ = mean_s_ = 0;
   scatter_s_ = 0;
   mapped_ = 0;
   refused_in_row_ = 0;
@@ -26,7 +26,7 @@ std::optional<Time> ClockMap::map(Time stamp, Time arrival) noexcept {
   const double x = x_of(stamp);
   const Duration difference = arrival - stamp;
   const double y = (difference - base_).seconds();
-  if (std::abs(y - (height_s_ + slope_ * (x - middle_s_))) > k_step.seconds()) {
+  if (std::abs(y - (offset_s_ + slope_ * (x - mean_s_))) > k_step.seconds()) {
     const Duration apart = difference - refused_difference_;
     const bool agrees = refused_in_row_ > 0 && apart <= k_step && Duration{} - apart <= k_step;
     refused_in_row_ = agrees ? refused_in_row_ + 1 : 1;
@@ -48,7 +48,7 @@ std::optional<Time> ClockMap::map(Time stamp, Time arrival) noexcept {
     bin = {number, x, y};
     fit();
   }
-  const double line = height_s_ + slope_ * (x - middle_s_);
+  const double line = offset_s_ + slope_ * (x - mean_s_);
   const Time mapped = stamp + base_ + from_seconds(line) - earliest_delay_;
   return std::min(mapped, arrival);
 }
@@ -61,13 +61,13 @@ void ClockMap::fit() noexcept {
     sum_x += bin.x_s;
     sum_y += bin.y_s;
   }
-  middle_s_ = sum_x / n;
-  height_s_ = sum_y / n;
+  mean_s_ = sum_x / n;
+  offset_s_ = sum_y / n;
   double xx = 0, xy = 0;
   for (const Bin& bin : bins_) {
     if (bin.number < 0) continue;
-    xx += (bin.x_s - middle_s_) * (bin.x_s - middle_s_);
-    xy += (bin.x_s - middle_s_) * (bin.y_s - height_s_);
+    xx += (bin.x_s - mean_s_) * (bin.x_s - mean_s_);
+    xy += (bin.x_s - mean_s_) * (bin.y_s - offset_s_);
   }
   // In less than three seconds the scatter of the delays would look like drift.
   slope_ = n > 3 ? std::clamp(xy / xx, -k_drift_max, k_drift_max) : 0;
@@ -75,11 +75,11 @@ void ClockMap::fit() noexcept {
   double square = 0, least = 0;
   for (const Bin& bin : bins_) {
     if (bin.number < 0) continue;
-    const double off = bin.y_s - (height_s_ + slope_ * (bin.x_s - middle_s_));
+    const double off = bin.y_s - (offset_s_ + slope_ * (bin.x_s - mean_s_));
     square += off * off;
     least = std::min(least, off);
   }
-  height_s_ += least;  // no delay is shorter than the earliest
+  offset_s_ += least;  // no delay is shorter than the earliest
   scatter_s_ = std::sqrt(square / (n - 1));
 }
 

@@ -58,9 +58,9 @@ class ClockMap {
   Time origin_;    // device
   Duration base_;  // arrival - stamp at the origin
   std::array<Bin, k_bins> bins_{};
-  double slope_ = 0, height_s_ = 0, middle_s_ = 0;  // y = height + slope (x - middle)
-  double scatter_s_ = 0;                            // of the bins' minima about the line
-  std::int64_t mapped_ = 0;                         // stamps since the last restart
+  double slope_ = 0, offset_s_ = 0, mean_s_ = 0;  // y = height + slope (x - middle)
+  double scatter_s_ = 0;                          // of the bins' minima about the line
+  std::int64_t mapped_ = 0;                       // stamps since the last restart
   std::uint64_t refused_ = 0, restarts_ = 0;
   int refused_in_row_ = 0;
   Duration refused_difference_;

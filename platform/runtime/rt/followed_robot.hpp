@@ -6,12 +6,12 @@
 
 namespace glint {
 
-struct FollowedRobotNotes {
-  std::atomic<std::int64_t> followed{0}, jumps{0}, unsure{0};  // images so far
-  std::atomic<double> shift_m{0}, turn_rad{0};                 // of the last jump
-  std::atomic<bool> jumped{false};              // true until an image is followed after a jump
-  std::atomic<std::int64_t> without_joints{0};  // images skipped: the joint states are too old
-  std::atomic<bool> joints_lost{false};         // the last image was skipped
+struct RobotTrackingStatus {
+  std::atomic<std::int64_t> followed{0}, jumps{0}, inconclusive{0};  // images so far
+  std::atomic<double> translation_m{0}, rotation_rad{0};             // of the last jump
+  std::atomic<bool> jumped{false};  // true until an image is followed after a jump
+  std::atomic<std::int64_t> skipped_without_joints{0};  // images: joint states too old
+  std::atomic<bool> joints_lost{false};                 // the last image was skipped
 };
 
 }  // namespace glint

@@ -66,7 +66,7 @@ class Check {
   }
 
  private:
-  void add(const std::string& line) { found_.spoils.push_back(line); }
+  void add(const std::string& line) { found_.timing_faults.push_back(line); }
 
   void throttling() {
     const auto runtime = line_of(root_ / "proc/sys/kernel/sched_rt_runtime_us");

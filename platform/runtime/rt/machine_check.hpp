@@ -10,7 +10,7 @@ namespace glint {
 struct MachineCheck {
   bool preempt_rt = false;
   // One line per defect: what was found, its effect on latency, the remedy. Empty: none found.
-  std::vector<std::string> spoils;
+  std::vector<std::string> timing_faults;
 };
 
 // For threads pinned to `cores` (empty: not pinned). `root` contains /proc and /sys.

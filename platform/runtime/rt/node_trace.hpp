@@ -46,10 +46,10 @@ class NodeTrace {
     span_.node = static_cast<std::uint8_t>(node);
     span_.flags = 0;
     span_.bound_ns = i < bounds_ns_.size() ? bounds_ns_[i] : 0;
-    waiting_ = true;
+    span_pending_ = true;
   }
   // Sets a flag on the span of the node that ended last.
-  void note(TraceFlag flag) noexcept {
+  void set_flag(TraceFlag flag) noexcept {
     span_.flags = static_cast<std::uint8_t>(span_.flags | flag);
   }
   // Adds a span that is not a node: a release, or the CAN writes.
@@ -67,9 +67,9 @@ class NodeTrace {
 
  private:
   void flush() noexcept {
-    if (!waiting_) return;
+    if (!span_pending_) return;
     (void)ring_->push(span_);
-    waiting_ = false;
+    span_pending_ = false;
   }
   [[nodiscard]] std::int64_t at(std::uint64_t cycles) const noexcept {
     return anchor_ns_ + static_cast<std::int64_t>(static_cast<double>(static_cast<std::int64_t>(
@@ -84,7 +84,7 @@ class NodeTrace {
   std::int64_t anchor_ns_ = 0;
   std::uint64_t anchor_cycles_ = 0;
   std::uint64_t begin_cycles_ = 0;
-  bool waiting_ = false;
+  bool span_pending_ = false;
 };
 
 }  // namespace glint

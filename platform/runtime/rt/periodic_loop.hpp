@@ -18,7 +18,7 @@ struct Tick {
 };
 
 // Message of a run that stopped for this reason.
-inline constexpr const char* k_ran_away =
+inline constexpr const char* k_no_sleep_message =
     "ticks: the system does not let the loop sleep until its next tick; the run stopped there, "
     "expected a clock that can be slept by";
 

@@ -18,7 +18,7 @@ void add_refusal(std::string& refused, const std::string& what, int error) {
 
 }  // namespace
 
-ThreadReport become(const ThreadSettings& settings) {
+ThreadReport apply_settings(const ThreadSettings& settings) {
   constexpr std::size_t k_name_max = 15;  // pthread_setname_np(3): 16 with the closing zero
   ThreadReport report;
   report.name = settings.name;
@@ -41,7 +41,7 @@ ThreadReport become(const ThreadSettings& settings) {
       add_refusal(report.refused, "SCHED_FIFO " + std::to_string(settings.priority), error);
       const sched_param none{};
       const bool idle =
-          settings.idle_otherwise && pthread_setschedparam(self, SCHED_IDLE, &none) == 0;
+          settings.idle_if_refused && pthread_setschedparam(self, SCHED_IDLE, &none) == 0;
       if (idle) report.refused += " (SCHED_IDLE instead)";
     }
   }
@@ -51,7 +51,7 @@ ThreadReport become(const ThreadSettings& settings) {
 RealTimeThread::RealTimeThread(const ThreadSettings& settings, std::function<void()> body) {
   Release reported;
   thread_ = std::thread([this, &settings, &reported, run = std::move(body)] {
-    report_ = become(settings);
+    report_ = apply_settings(settings);
     reported.post();  // from here on the captured references are invalid
     run();
   });

@@ -9,10 +9,10 @@
 namespace glint {
 
 struct ThreadSettings {
-  std::string name;             // the first 15 characters are visible in system tools
-  int core = -1;                // run on this core only; -1: on any
-  int priority = 0;             // SCHED_FIFO, 1 to 99; 0: default scheduling
-  bool idle_otherwise = false;  // if SCHED_FIFO is refused: SCHED_IDLE, below all other threads
+  std::string name;              // the first 15 characters are visible in system tools
+  int core = -1;                 // run on this core only; -1: on any
+  int priority = 0;              // SCHED_FIFO, 1 to 99; 0: default scheduling
+  bool idle_if_refused = false;  // if SCHED_FIFO is refused: SCHED_IDLE, below all other threads
 };
 
 struct ThreadReport {
@@ -23,7 +23,7 @@ struct ThreadReport {
 };
 
 // Applies the settings to the calling thread.
-ThreadReport become(const ThreadSettings& settings);
+ThreadReport apply_settings(const ThreadSettings& settings);
 
 // A thread that applies its settings before its body starts. The destructor joins it; the body must
 // return by then.

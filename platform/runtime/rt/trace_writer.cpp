@@ -28,14 +28,14 @@ void TraceWriter::start() {
 
 void TraceWriter::run() {
   for (;;) {
-    const bool last_look = ending_;
-    write_waiting();
-    if (last_look) return;
+    const bool last_pass = ending_;
+    write_pending();
+    if (last_pass) return;
     std::this_thread::sleep_for(k_poll);
   }
 }
 
-void TraceWriter::write_waiting() {
+void TraceWriter::write_pending() {
   TraceSpan span;
   for (const auto& ring : rings_) {
     while (ring->pop(span)) {

@@ -35,7 +35,7 @@ class TraceWriter {
 
  private:
   void run();
-  void write_waiting();
+  void write_pending();
 
   std::string path_, part_path_;
   std::FILE* file_ = nullptr;

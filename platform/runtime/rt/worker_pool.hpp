@@ -52,7 +52,7 @@ class ParallelExecutor {
   // `others` has W - 1 entries. A worker with its own core and SCHED_FIFO spins `spins_max` times
   // before it sleeps.
   ParallelExecutor(const std::vector<ThreadSettings>& others, std::uint32_t spins_max)
-      : pool_(checked(others)), rest_(pool_.reports(), spins_max), workers_(rest_) {}
+      : pool_(checked(others)), wait_policy_(pool_.reports(), spins_max), workers_(wait_policy_) {}
   ~ParallelExecutor() { pool_.stop(); }  // a worker may still report its last progress
   ParallelExecutor(const ParallelExecutor&) = delete;
   ParallelExecutor& operator=(const ParallelExecutor&) = delete;
@@ -84,8 +84,8 @@ class ParallelExecutor {
 
   void* graph_ = nullptr;
   WorkerPool pool_;
-  WorkerRest rest_;
-  graph::Workers<W, WorkerRest> workers_;
+  WorkerWaitPolicy wait_policy_;
+  graph::Workers<W, WorkerWaitPolicy> workers_;
 };
 
 }  // namespace glint

@@ -15,14 +15,14 @@
 
 namespace glint {
 
-class WorkerRest {
+class WorkerWaitPolicy {
  public:
   // 20 to 40 us: the cost of a sleep and its wake-up.
   static constexpr std::uint32_t k_shared_core_spins_max = 1000;
   static constexpr Duration k_sleep_max = microseconds(200);
 
   // `reports` of the workers' threads: the rights granted by the system.
-  WorkerRest(const std::vector<ThreadReport>& reports, std::uint32_t spins_max) noexcept
+  WorkerWaitPolicy(const std::vector<ThreadReport>& reports, std::uint32_t spins_max) noexcept
       : spins_max_(spins_max) {
     for (const ThreadReport& report : reports) {
       if (report.pinned && report.real_time) continue;

@@ -35,7 +35,7 @@ bool is_misassigned(const ToolOutcome& outcome, const Tool& tool, const Pose& T_
 
 void state(const Tracker& tracker, int t, const Estimates& estimates, ToolOutcome& outcome) {
   const auto i = static_cast<std::size_t>(t);
-  const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_slices).tools[i];
+  const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_partitions).tools[i];
   const Labeling& labeling = labeling_of(tracker.token<Assignment>(), fitted, i);
   const Markers& markers = tracker.token<Markers>();
   const Matrix6 covariance = tip_covariance(estimates.tracks[i], fitted, estimates.tips[i]);
@@ -70,36 +70,36 @@ FrameOutcome outcome_of(const Estimates& estimates, const Tracker* tracker) {
   for (int t = 0; t < estimates.tool_count; ++t) {
     const Track& track = estimates.tracks[static_cast<std::size_t>(t)];
     ToolOutcome& tool = outcome.tools[static_cast<std::size_t>(t)];
-    tool.seen = track.seen_now && estimates.verdict.usable();
+    tool.seen = track.measured_now && estimates.verdict.usable();
     tool.reason = track.reason;
     tool.marker_mask = track.marker_mask;
     tool.T_camera_tool = track.T_camera_tool;
-    tool.there = track.identity != 0;
+    tool.present = track.identity != 0;
     if (tool.seen && tracker != nullptr) state(*tracker, t, estimates, tool);
   }
   return outcome;
 }
 
-Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<FrameTruth>& truths,
-               const ToolSet& tools) {
+Accuracy evaluate(const std::vector<FrameOutcome>& outcomes,
+                  const std::vector<FrameGroundTruth>& ground_truths, const ToolSet& tools) {
   Accuracy result;
   double tip_sum = 0, angle_sum = 0;
   std::set<std::int64_t> exposed;
-  std::array<bool, k_tools_max> there;
-  there.fill(true);
-  const std::size_t count = std::min(outcomes.size(), truths.size());
+  std::array<bool, k_tools_max> present;
+  present.fill(true);
+  const std::size_t count = std::min(outcomes.size(), ground_truths.size());
   result.frames = static_cast<std::int64_t>(count);
   for (std::size_t f = 0; f < count; ++f) {
     const FrameOutcome& outcome = outcomes[f];
-    const FrameTruth& truth = truths[f];
+    const FrameGroundTruth& truth = ground_truths[f];
     const bool overrun = is_overrun(outcome.verdict);
     result.refused += outcome.verdict != Reason::none && !overrun ? 1 : 0;
     if (!exposed.insert(truth.mid_exposure.nanoseconds).second) continue;
     for (int t = 0; t < tools.count; ++t) {
       const auto i = static_cast<std::size_t>(t);
       const ToolOutcome& tool = outcome.tools[i];
-      if (!overrun) there[i] = tool.there;  // an overrun's substitute does not state it
-      if (!there[i]) continue;
+      if (!overrun) present[i] = tool.present;  // an overrun's substitute does not state it
+      if (!present[i]) continue;
       if (is_trackable(truth.visible_mask[i])) {
         ++result.trackable;
         result.tracked += tool.seen ? 1 : 0;

@@ -36,7 +36,7 @@ struct ToolOutcome {
   Reason reason = Reason::none;
   std::uint8_t marker_mask = 0;
   Pose T_camera_tool;
-  bool there = true;  // false: removed from the tool set; not judged
+  bool present = true;  // false: removed from the tool set; not judged
   double tip_sigma_m = 0;
   std::uint8_t blob_mask = 0;  // the pose's markers that have an entry in `blobs`; 0: not stated
   std::array<BlobSlopes, k_markers_per_tool_max> blobs{};
@@ -70,9 +70,10 @@ struct Accuracy {
   }
 };
 
-// outcomes[i] and truths[i] belong to the i-th frame delivered.
-[[nodiscard]] Accuracy judge(const std::vector<FrameOutcome>& outcomes,
-                             const std::vector<FrameTruth>& truths, const ToolSet& tools);
+// outcomes[i] and ground_truths[i] belong to the i-th frame delivered.
+[[nodiscard]] Accuracy evaluate(const std::vector<FrameOutcome>& outcomes,
+                                const std::vector<FrameGroundTruth>& ground_truths,
+                                const ToolSet& tools);
 
 // `tracker`: the tracker that made the estimates, with its tokens still those of this frame. null:
 // another method or an overrun's substitute made them; then covariance and assignment are not

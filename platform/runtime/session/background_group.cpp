@@ -13,12 +13,13 @@ template class GroupRunner<Background>;
 namespace {
 
 // Longest time until run() notices the end of the session.
-constexpr Duration k_look = milliseconds(20);
+constexpr Duration k_stop_poll_period = milliseconds(20);
 
 // Prior variance of the robot's pose in the cell: 10 mm and a degree, squared.
-constexpr double k_given_variance_m2 = 1e-4, k_given_variance_rad2 = 3e-4;
+constexpr double k_prior_variance_m2 = 1e-4, k_prior_variance_rad2 = 3e-4;
 
-RunnerSettings<Background> background_settings(const Cell& cell, const GroupPlan<Background>& plan,
+RunnerSettings<Background> background_settings(const Cell& cell,
+                                               const GroupSchedule<Background>& plan,
                                                TraceWriter* trace) {
   RunnerSettings<Background> settings;
   settings.plan = plan.tables;
@@ -34,7 +35,7 @@ bool wait_until(Time due, const std::atomic<bool>& stop) noexcept {
   while (!stop) {
     const Time now = monotonic_now();
     if (now >= due) return true;
-    if (!sleep_until(std::min(due, now + k_look))) return false;
+    if (!sleep_until(std::min(due, now + k_stop_poll_period))) return false;
   }
   return false;
 }
@@ -45,7 +46,7 @@ BackgroundScene read_background_scene(const Cell& cell, DepthPngReader png) {
   BackgroundScene scene;
   if (!cell.mapping) return scene;
   const MappingSettings& mapping = *cell.mapping;
-  scene.pictures = {read_depth_sequence(mapping.source, png), mapping.period};
+  scene.images = {read_depth_sequence(mapping.source, png), mapping.period};
   if (mapping.model.empty()) return scene;
   scene.model = read_robot_cloud(mapping.model);
   scene.poses = link_poses(scene.model, mapping.joints, cell.file + ": mapping.joints");
@@ -61,10 +62,11 @@ TrackedCapsules capsules_of(const Estimates& estimates) {
     const Pose& T_world_middle = track.motion.pose;
     const Vector3 arm = T_world_middle.rotation * estimates.tips[at].arm_m;
     const double length = arm.norm();
-    const Vector3 back = length > 0 ? Vector3(arm * (-k_held_behind_m / length)) : Vector3::Zero();
+    const Vector3 back =
+        length > 0 ? Vector3(arm * (-k_tool_capsule_extension_m / length)) : Vector3::Zero();
     const Vector3& middle = T_world_middle.translation;
     out.items[static_cast<std::size_t>(out.count++)] = {middle + arm, middle + back,
-                                                        k_held_radius_m};
+                                                        k_tool_capsule_radius_m};
   }
   return out;
 }
@@ -74,10 +76,10 @@ MapSettings map_settings_of(const Cell& cell) {
   settings.depth.stride = cell.mapping->stride;
   settings.voxels.voxel_m = static_cast<float>(cell.mapping->voxel_m);
   settings.voxels_max = cell.mapping->voxels_max;
-  return in_slices(settings);
+  return limited_for_slices(settings);
 }
 
-BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan,
+BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupSchedule<Background>& plan,
                                  TraceWriter* trace, BackgroundScene scene, RobotSinks sinks)
     : runner_(background_settings(cell, plan, trace)),
       period_(cell.background->period),
@@ -89,7 +91,7 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
   map.limits = limits_of(cell);
   if (cell.mapping) {
     map.settings = map_settings_of(cell);
-    map.pictures_a_map = cell.mapping->pictures_a_map;
+    map.images_per_map = cell.mapping->images_per_map;
     memory_.resize(MapSlices::bytes(map.settings));
     map.memory = memory_;
   }
@@ -98,8 +100,8 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
   robot.model = scene_.model.cloud();
   robot.links = robot_.links();
   robot.T_world_robot = cell.T_world_robot;
-  robot.covariance.diagonal() << k_given_variance_m2, k_given_variance_m2, k_given_variance_m2,
-      k_given_variance_rad2, k_given_variance_rad2, k_given_variance_rad2;
+  robot.covariance.diagonal() << k_prior_variance_m2, k_prior_variance_m2, k_prior_variance_m2,
+      k_prior_variance_rad2, k_prior_variance_rad2, k_prior_variance_rad2;
   robot.pixels_max = k_scene_pixels_max;
   if (const graph::Prepared ready = graph_.prepare(); !ready) {
     throw InputError(cell.file +
@@ -108,9 +110,9 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
   }
 }
 
-ThreadSettings BackgroundGroup::thread_settings(const GroupPlan<Background>& plan) {
+ThreadSettings BackgroundGroup::thread_settings(const GroupSchedule<Background>& plan) {
   ThreadSettings settings{"glint-slices", plan.cores[0], plan.priority};
-  settings.idle_otherwise = true;
+  settings.idle_if_refused = true;
   return settings;
 }
 
@@ -128,7 +130,7 @@ void BackgroundGroup::run(Time epoch, const std::atomic<bool>& stop) noexcept {
   }
 }
 
-void BackgroundGroup::reach(Time now) noexcept {
+void BackgroundGroup::run_due_slices(Time now) noexcept {
   for (; Time{} + period_ * next_ <= now; ++next_) {
     const Time nominal = Time{} + period_ * next_;
     slice(nominal, nominal);
@@ -136,27 +138,27 @@ void BackgroundGroup::reach(Time now) noexcept {
 }
 
 void BackgroundGroup::slice(Time nominal, Time now) noexcept {
-  if (is_free()) show(scene_.pictures.newest(nominal));
+  if (is_idle()) set_image(scene_.images.newest(nominal));
   const std::uint64_t activation = ++counts_.slices;
   (void)runner_.run(graph_, {activation, activation, nominal, now, 0});
-  runner_.settle(graph_);
+  runner_.finish_activation(graph_);
   const MapProgress& progress = std::as_const(graph_).output<MapProgress>();
   const RobotProgress& robot = std::as_const(graph_).output<RobotProgress>();
   counts_.longest_steps = std::max({counts_.longest_steps, progress.steps, robot.steps});
   counts_.map = progress.totals;
-  if (robot.followed > counts_.robot.followed) tell_robot(robot);
+  if (robot.followed > counts_.robot.followed) publish_robot(robot);
   jumps_ = robot.jumps;
-  if (sinks_.notes != nullptr) note_robot(robot);
+  if (sinks_.notes != nullptr) update_robot_notes(robot);
   counts_.robot = robot;
 }
 
-bool BackgroundGroup::is_free() const noexcept {
+bool BackgroundGroup::is_idle() const noexcept {
   return graph_.output<MapProgress>().free && graph_.output<RobotProgress>().free;
 }
 
 // Records the frame before publishing it, so that its record precedes those of the ticks that read
 // it.
-void BackgroundGroup::tell_robot(const RobotProgress& robot) noexcept {
+void BackgroundGroup::publish_robot(const RobotProgress& robot) noexcept {
   ++robot_version_;
   const RobotFrame& frame = robot.frame;
   if (sinks_.lane != nullptr) {
@@ -170,12 +172,12 @@ void BackgroundGroup::tell_robot(const RobotProgress& robot) noexcept {
 }
 
 // An image without a usable result leaves `jumped` unchanged.
-void BackgroundGroup::note_robot(const RobotProgress& robot) const noexcept {
-  FollowedRobotNotes& notes = *sinks_.notes;
-  notes.shift_m.store(robot.shift_m, std::memory_order_relaxed);
-  notes.turn_rad.store(robot.turn_rad, std::memory_order_relaxed);
+void BackgroundGroup::update_robot_notes(const RobotProgress& robot) const noexcept {
+  RobotTrackingStatus& notes = *sinks_.notes;
+  notes.translation_m.store(robot.translation_m, std::memory_order_relaxed);
+  notes.rotation_rad.store(robot.rotation_rad, std::memory_order_relaxed);
   notes.jumps.store(robot.jumps, std::memory_order_relaxed);
-  notes.unsure.store(robot.unsure, std::memory_order_relaxed);
+  notes.inconclusive.store(robot.inconclusive, std::memory_order_relaxed);
   if (robot.jumps > counts_.robot.jumps) notes.jumped.store(true, std::memory_order_relaxed);
   if (robot.followed > counts_.robot.followed) notes.jumped.store(false, std::memory_order_relaxed);
   notes.followed.store(robot.followed, std::memory_order_relaxed);
@@ -183,38 +185,39 @@ void BackgroundGroup::note_robot(const RobotProgress& robot) const noexcept {
 
 // Returns false if the joint positions are too old: then the robot's posture is unknown and it is
 // not searched for.
-bool BackgroundGroup::knows_joints_at(Time time) noexcept {
-  if (heard_ == nullptr) return true;
-  robot_.update(*heard_);
+bool BackgroundGroup::joints_valid_at(Time time) noexcept {
+  if (joint_source_ == nullptr) return true;
+  robot_.update(*joint_source_);
   counts_.joints_used = robot_.used();
-  counts_.joints_passed_over = robot_.passed_over();
-  const bool known = robot_.is_known_at(time);
-  if (!known) without_joints_ = ++counts_.pictures_without_joints;
+  counts_.joints_skipped = robot_.skipped();
+  const bool known = robot_.is_valid_at(time);
+  if (!known) without_joints_ = ++counts_.images_without_joints;
   if (sinks_.notes != nullptr) {
-    sinks_.notes->without_joints.store(counts_.pictures_without_joints, std::memory_order_relaxed);
+    sinks_.notes->skipped_without_joints.store(counts_.images_without_joints,
+                                               std::memory_order_relaxed);
     sinks_.notes->joints_lost.store(!known, std::memory_order_relaxed);
   }
   return known;
 }
 
-void BackgroundGroup::show(std::int64_t number) noexcept {
-  if (number <= shown_) return;
-  counts_.pictures_missed += number - shown_ - 1;
-  shown_ = number;
-  const DepthLoop& pictures = scene_.pictures;
-  const Time taken = pictures.time_of(number);
-  const DepthFrame& frame = pictures.picture(number);
+void BackgroundGroup::set_image(std::int64_t number) noexcept {
+  if (number <= last_image_) return;
+  counts_.images_missed += number - last_image_ - 1;
+  last_image_ = number;
+  const DepthLoop& images = scene_.images;
+  const Time taken = images.time_of(number);
+  const DepthFrame& frame = images.image(number);
   (void)tracked_.sample();
   const auto end = std::copy_n(
       frame.left_out.begin(), std::min(frame.left_out.size(), left_out_.size()), left_out_.begin());
-  const std::span<const LeftOut> held = tracked_.value().all();
+  const std::span<const ExclusionCapsule> held = tracked_.value().all();
   const auto room = static_cast<std::size_t>(left_out_.end() - end);
   const auto all = std::copy_n(held.begin(), std::min(held.size(), room), end);
   const auto count = static_cast<std::size_t>(all - left_out_.begin());
-  const bool known = knows_joints_at(taken);
+  const bool known = joints_valid_at(taken);
   graph_.input<ShownDepth>() = {
-      {frame.picture(), pictures.camera(), frame.T_world_camera, std::span(left_out_).first(count)},
-      known ? pictures.scene(number) : ShownDepth::Scene{},
+      {frame.picture(), images.camera(), frame.T_world_camera, std::span(left_out_).first(count)},
+      known ? images.scene(number) : ShownDepth::Scene{},
       robot_.links(),
       taken,
       static_cast<std::uint64_t>(number)};
@@ -223,10 +226,10 @@ void BackgroundGroup::show(std::int64_t number) noexcept {
 void BackgroundGroup::finish() noexcept {
   ExtendMap& node = graph_.node<ExtendMap>();
   const auto run_on = [&] {
-    while (!is_free()) graph_.activate();
+    while (!is_idle()) graph_.activate();
   };
   run_on();
-  node.make_map();
+  node.start_map();
   graph_.activate();
   run_on();
   counts_.map = std::as_const(graph_).output<MapProgress>().totals;

@@ -34,7 +34,7 @@ extern template class GroupRunner<Background>;  // in background_group.cpp, once
 
 // Inputs of a background group, read from the files that its cell names.
 struct BackgroundScene {
-  DepthLoop pictures;
+  DepthLoop images;
   RobotCloud model;
   LinkPoses poses;  // of the model's links, at the cell's joints
 };
@@ -45,13 +45,13 @@ struct BackgroundScene {
 
 // Capsule about the line from a tool's tip to its markers' centre, extended over the hand behind
 // it.
-inline constexpr double k_held_radius_m = 0.08, k_held_behind_m = 0.15;
+inline constexpr double k_tool_capsule_radius_m = 0.08, k_tool_capsule_extension_m = 0.15;
 
 // Capsules of the tracked tools and of the hands that hold them; the map excludes them.
 struct TrackedCapsules {
-  std::array<LeftOut, k_tools_max> items;  // in the world
+  std::array<ExclusionCapsule, k_tools_max> items;  // in the world
   int count = 0;
-  [[nodiscard]] std::span<const LeftOut> all() const {
+  [[nodiscard]] std::span<const ExclusionCapsule> all() const {
     return std::span(items).first(static_cast<std::size_t>(count));
   }
 };
@@ -61,22 +61,22 @@ struct TrackedCapsules {
 
 struct BackgroundCounts {
   std::uint64_t slices = 0;
-  std::uint64_t late = 0;            // slices that ended after the next one was due
-  std::uint64_t skipped = 0;         // releases during a slice that still ran
-  Duration longest_response;         // from nominal release to the slice's end; in order: zero
-  int longest_steps = 0;             // maximum over the slices
-  std::int64_t pictures_missed = 0;  // taken while another one was processed; not used
+  std::uint64_t late = 0;          // slices that ended after the next one was due
+  std::uint64_t skipped = 0;       // releases during a slice that still ran
+  Duration longest_response;       // from nominal release to the slice's end; in order: zero
+  int longest_steps = 0;           // maximum over the slices
+  std::int64_t images_missed = 0;  // taken while another one was processed; not used
   MapTotals map;
   RobotProgress robot;
-  std::int64_t joints_used = 0, joints_passed_over = 0;  // of the received joint states
-  std::int64_t pictures_without_joints = 0;              // without robot search: joints too old
+  std::int64_t joints_used = 0, joints_skipped = 0;  // of the received joint states
+  std::int64_t images_without_joints = 0;            // without robot search: joints too old
 };
 
 // Outputs of the followed robot's pose, written before every tick that reads it; each may be null.
 struct RobotSinks {
   graph::TripleBuffer<RobotFrame>* published = nullptr;  // version 1: the cell's own
   RecorderLane* lane = nullptr;
-  FollowedRobotNotes* notes = nullptr;
+  RobotTrackingStatus* notes = nullptr;
   DdsSink* dds = nullptr;
 };
 
@@ -87,20 +87,22 @@ class BackgroundGroup {
  public:
   // Requires a cell with a background. `trace` may be null and must not be started yet. Allocates
   // all memory here. Throws InputError for map sizes that no map can have.
-  BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan, TraceWriter* trace,
+  BackgroundGroup(const Cell& cell, const GroupSchedule<Background>& plan, TraceWriter* trace,
                   BackgroundScene scene, RobotSinks sinks = {});
 
   // Sets the source of the robot's joints; call before the first slice. The slice that begins an
   // image reads the newest joints.
-  void hear(graph::TripleBuffer<HeardJoints>& joints) noexcept { heard_ = &joints; }
+  void set_joint_source(graph::TripleBuffer<ReceivedJoints>& joints) noexcept {
+    joint_source_ = &joints;
+  }
 
   // Settings for the thread that calls run().
-  [[nodiscard]] static ThreadSettings thread_settings(const GroupPlan<Background>& plan);
+  [[nodiscard]] static ThreadSettings thread_settings(const GroupSchedule<Background>& plan);
 
   // Runs from `epoch` until `stop` is set; returns at most a slice and some milliseconds after it.
   void run(Time epoch, const std::atomic<bool>& stop) noexcept;
   // For runs that are not in real time: runs all slices due by `now`.
-  void reach(Time now) noexcept;
+  void run_due_slices(Time now) noexcept;
 
   // Written by the frame group; the map excludes these capsules.
   [[nodiscard]] graph::TripleBuffer<TrackedCapsules>& tracked() noexcept { return tracked_; }
@@ -110,7 +112,7 @@ class BackgroundGroup {
   // Number of images not searched for the robot because its joints were too old. Thread-safe.
   [[nodiscard]] std::int64_t without_joints() const noexcept { return without_joints_; }
   // First joint of the model that a received state lacked; null: none. Thread-safe.
-  [[nodiscard]] const std::string* lacking_joint() const noexcept { return robot_.lacking(); }
+  [[nodiscard]] const std::string* missing_joint() const noexcept { return robot_.missing_joint(); }
   // Why the first complete state could not pose the model; Reason::none: all could. Thread-safe.
   [[nodiscard]] Reason unusable_joints() const noexcept { return robot_.unusable(); }
 
@@ -121,26 +123,26 @@ class BackgroundGroup {
 
  private:
   void slice(Time nominal, Time now) noexcept;
-  void show(std::int64_t number) noexcept;
-  [[nodiscard]] bool is_free() const noexcept;
-  void tell_robot(const RobotProgress& robot) noexcept;
-  void note_robot(const RobotProgress& robot) const noexcept;
-  [[nodiscard]] bool knows_joints_at(Time time) noexcept;
+  void set_image(std::int64_t number) noexcept;
+  [[nodiscard]] bool is_idle() const noexcept;
+  void publish_robot(const RobotProgress& robot) noexcept;
+  void update_robot_notes(const RobotProgress& robot) const noexcept;
+  [[nodiscard]] bool joints_valid_at(Time time) noexcept;
 
   Background graph_;
   std::vector<std::byte> memory_;
   GroupRunner<Background> runner_;
   Duration period_;
   BackgroundScene scene_;
-  HeardRobot robot_;
-  graph::TripleBuffer<HeardJoints>* heard_ = nullptr;
+  RobotLinkPoses robot_;
+  graph::TripleBuffer<ReceivedJoints>* joint_source_ = nullptr;
   RobotSinks sinks_;
   std::uint64_t robot_version_ = 1;
   std::atomic<std::int64_t> jumps_{0}, without_joints_{0};
-  std::int64_t shown_ = 0;
+  std::int64_t last_image_ = 0;
   std::int64_t next_ = 0;  // number of the next slice, in order
   graph::TripleBuffer<TrackedCapsules> tracked_;
-  std::array<LeftOut, k_left_out_max> left_out_;
+  std::array<ExclusionCapsule, k_exclusion_capsules_max> left_out_;
   BackgroundCounts counts_;
 };
 

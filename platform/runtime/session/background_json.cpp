@@ -11,7 +11,7 @@ nlohmann::ordered_json as_json(const BackgroundCounts& counts) {
           {"response_us", {{"max", counts.longest_response.seconds() * 1e6}}},
           {"longest_steps", counts.longest_steps},
           {"pictures", counts.map.pictures},
-          {"pictures_missed", counts.pictures_missed},
+          {"pictures_missed", counts.images_missed},
           {"points", counts.map.measured},
           {"points_left_out", counts.map.left_out},
           {"points_dropped", counts.map.dropped},
@@ -22,11 +22,11 @@ nlohmann::ordered_json as_json(const BackgroundCounts& counts) {
           {"references",
            {{"followed", counts.robot.followed},
             {"jumps_refused", counts.robot.jumps},
-            {"unsure", counts.robot.unsure},
+            {"unsure", counts.robot.inconclusive},
             {"last", name_of(counts.robot.last)},
             {"joint_states_used", counts.joints_used},
-            {"joint_states_passed_over", counts.joints_passed_over},
-            {"pictures_without_joints", counts.pictures_without_joints}}}};
+            {"joint_states_passed_over", counts.joints_skipped},
+            {"pictures_without_joints", counts.images_without_joints}}}};
 }
 
 }  // namespace glint

@@ -19,14 +19,14 @@
 
 namespace glint {
 
-class CalibrationWatch {
+class CalibrationMonitor {
  public:
-  explicit CalibrationWatch(const Cell& cell);
+  explicit CalibrationMonitor(const Cell& cell);
 
   // Call on the frame thread after each frame. No heap.
-  void see(const Tracker& tracker) noexcept;
+  void add_frame(const Tracker& tracker) noexcept;
 
-  // Findings for the tools with at least k_fits_least fits. Call after the last frame.
+  // Findings for the tools with at least k_fits_min fits. Call after the last frame.
   [[nodiscard]] std::vector<CalibrationFinding> findings() const;
   // The sums behind the findings of one tool.
   [[nodiscard]] const CalibrationErrors& errors_of(std::size_t tool) const {
@@ -36,7 +36,7 @@ class CalibrationWatch {
   // Call on one other thread, not real-time, while frames arrive. Writes the findings so far to
   // `notes` every k_review. Each call reads the newest sums of one tool.
   static constexpr Duration k_review = milliseconds(1000);
-  void review(Time now, CalibrationNotes& notes);
+  void review(Time now, CalibrationFindingsStore& notes);
 
  private:
   struct Watched {
@@ -45,13 +45,13 @@ class CalibrationWatch {
     Pose counted;  // T_camera_tool of the last added fit
     CalibrationErrors errors;
   };
-  struct SeenBody {
-    StampedPose head;  // at the sighting
-    BodySight sight;
+  struct BodySighting {
+    TimedPose head;  // at the sighting
+    BodyMeasurement sight;
   };
-  void see(const Tracker& tracker, const Tool& tool, Watched& watched) noexcept;
+  void add_fit_of_tool(const Tracker& tracker, const Tool& tool, Watched& watched) noexcept;
   [[nodiscard]] bool body_is_due(int tool, const HeadPose& head, Time now) const;
-  void note_body(const OptimalFit& fit, const HeadPose& head) noexcept;
+  void add_sighting(const OptimalFit& fit, const HeadPose& head) noexcept;
   [[nodiscard]] double time_sigma_s() const;
   using AllWatched = std::array<Watched, k_tools_max>;
   [[nodiscard]] std::vector<CalibrationFinding> findings_of(const AllWatched& tools,
@@ -60,10 +60,10 @@ class CalibrationWatch {
   const Cell& cell_;
   AllWatched tools_;
   std::uint64_t seen_ = 0;  // frames
-  HeadWalk walk_;
-  SeenBody body_;                   // the newest sighting
-  StampedPose head_before_;         // of the sighting before body_
-  int in_a_row_ = 0;                // consecutive sightings, up to 2
+  HeadErrorProcess walk_;
+  BodySighting body_;               // the newest sighting
+  TimedPose head_before_;           // of the sighting before body_
+  int consecutive_sightings_ = 0;   // consecutive sightings, up to 2
   std::optional<Time> last_sight_;  // last one added to world_
   WorldErrors world_;
   struct Newest {

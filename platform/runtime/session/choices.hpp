@@ -29,7 +29,7 @@ using OverrunNotes = graph::Ring<OverrunNote, 64>;
   return {frame.mid_exposure, frame.stamp_sigma, frame.arrival, frame.sequence, Reason::none};
 }
 
-[[nodiscard]] inline ChoiceRecord as_record(const graph::Choice& choice,
+[[nodiscard]] inline ChoiceRecord as_record(const graph::ReleaseInputs& choice,
                                             std::int64_t unix_offset_ns) {
   ChoiceRecord record;
   record.group = static_cast<std::uint8_t>(choice.group);
@@ -42,8 +42,8 @@ using OverrunNotes = graph::Ring<OverrunNote, 64>;
   return record;
 }
 
-[[nodiscard]] inline graph::Choice as_choice(const ChoiceRecord& record) {
-  graph::Choice choice;
+[[nodiscard]] inline graph::ReleaseInputs as_choice(const ChoiceRecord& record) {
+  graph::ReleaseInputs choice;
   choice.group = record.group;
   choice.activation = record.activation;
   choice.nominal_ns = record.nominal.nanoseconds;

@@ -15,8 +15,8 @@ bool DecisionHash::add_verdict(std::uint64_t sequence, const Estimates& estimate
   bool seen = false;
   for (int t = 0; t < estimates.tool_count; ++t) {
     const Track& track = estimates.tracks[static_cast<std::size_t>(t)];
-    seen = seen || track.seen_now;
-    verdicts_.add(std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(track.seen_now),
+    seen = seen || track.measured_now;
+    verdicts_.add(std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(track.measured_now),
                                               static_cast<std::uint8_t>(track.reason),
                                               track.marker_mask});
   }

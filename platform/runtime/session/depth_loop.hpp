@@ -20,9 +20,9 @@ class DepthLoop {
       : sequence_(std::move(sequence)), period_(period) {
     const CameraModel& camera = sequence_.camera;
     while (camera.width / stride_ * (camera.height / stride_) > k_scene_pixels_max) ++stride_;
-    for (const DepthFrame& frame : sequence_.frames) scenes_.push_back(thinned(frame));
+    for (const DepthFrame& frame : sequence_.frames) scenes_.push_back(subsampled(frame));
     scene_camera_ = {camera.width / stride_, camera.height / stride_, camera.fx / stride_,
-                     camera.fy / stride_,    thinned(camera.cx),      thinned(camera.cy)};
+                     camera.fy / stride_,    subsampled(camera.cx),   subsampled(camera.cy)};
   }
 
   // Number of the newest image taken by `now`, from 1; 0: none.
@@ -34,22 +34,22 @@ class DepthLoop {
     return Time{} + period_ * (number - 1);
   }
   // Plays forward, then backward, so that the camera's pose never jumps.
-  [[nodiscard]] const DepthFrame& picture(std::int64_t number) const noexcept {
-    return sequence_.frames[place_of(number)];
+  [[nodiscard]] const DepthFrame& image(std::int64_t number) const noexcept {
+    return sequence_.frames[index_of(number)];
   }
   // The same image, subsampled to at most k_scene_pixels_max pixels for the robot search.
   [[nodiscard]] ShownDepth::Scene scene(std::int64_t number) const noexcept {
-    return {scene_camera_, scenes_[place_of(number)]};
+    return {scene_camera_, scenes_[index_of(number)]};
   }
   [[nodiscard]] const CameraModel& camera() const noexcept { return sequence_.camera; }
 
  private:
-  [[nodiscard]] std::size_t place_of(std::int64_t number) const noexcept {
+  [[nodiscard]] std::size_t index_of(std::int64_t number) const noexcept {
     const auto last = static_cast<std::int64_t>(sequence_.frames.size()) - 1;
     const std::int64_t turn = last > 0 ? (number - 1) % (2 * last) : 0;
     return static_cast<std::size_t>(turn <= last ? turn : 2 * last - turn);
   }
-  [[nodiscard]] std::vector<float> thinned(const DepthFrame& frame) const {
+  [[nodiscard]] std::vector<float> subsampled(const DepthFrame& frame) const {
     std::vector<float> out;
     for (int y = 0; y < frame.height / stride_; ++y) {
       for (int x = 0; x < frame.width / stride_; ++x) {
@@ -60,7 +60,7 @@ class DepthLoop {
     return out;
   }
   // Pixel x of the subsampled image is pixel stride x + stride / 2; pixel centres are at + 0.5.
-  [[nodiscard]] double thinned(double centre) const {
+  [[nodiscard]] double subsampled(double centre) const {
     return (centre - stride_ / 2 - 0.5) / stride_ + 0.5;
   }
 

@@ -8,8 +8,8 @@ namespace {
 constexpr auto k_poll = std::chrono::milliseconds(2);
 }  // namespace
 
-FileSink::FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full,
-                   const Cell& cell, TruthOfTool truth)
+FileSink::FileSink(const std::string& tum_file, const std::string& csv_file,
+                   OverflowPolicy when_full, const Cell& cell, GroundTruthOfTool truth)
     : figures_(cell, std::move(truth)), when_full_(when_full) {
   if (!tum_file.empty()) tum_ = std::make_unique<TumFile>(tum_file);
   if (!csv_file.empty()) csv_ = std::make_unique<CsvFile>(csv_file);
@@ -17,17 +17,17 @@ FileSink::FileSink(const std::string& tum_file, const std::string& csv_file, Whe
 }
 
 void FileSink::offer(const PoseSample& sample, std::optional<Time> newest_frame) noexcept {
-  while (when_full_ == WhenFull::wait && waiting_ >= k_ring_capacity) {
+  while (when_full_ == OverflowPolicy::wait && queued_ >= k_ring_capacity) {
     std::this_thread::sleep_for(k_poll);
   }
-  ++waiting_;
-  if (!ring_.push({sample, newest_frame})) --waiting_;
+  ++queued_;
+  if (!ring_.push({sample, newest_frame})) --queued_;
 }
 
-bool FileSink::write_waiting() {
-  Offered offered;
+bool FileSink::write_queued() {
+  QueuedSample offered;
   if (!ring_.pop(offered)) return false;
-  --waiting_;
+  --queued_;
   const PoseSample& sample = offered.sample;
   figures_.add(sample, offered.newest_frame);
   if (tum_ != nullptr) tum_->write(sample);
@@ -45,7 +45,7 @@ void FileSink::count_lost() noexcept {
 void FileSink::run() {
   for (;;) {
     const bool last_look = ending_;
-    while (write_waiting()) {
+    while (write_queued()) {
     }
     if (last_look) return;
     std::this_thread::sleep_for(k_poll);

@@ -24,14 +24,14 @@ class FileSink {
   static constexpr int k_ring_capacity = 1024;  // 4 s of one tool at 250 Hz
 
   // An empty name creates no file. Throws InputError if a file cannot be created.
-  FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full,
-           const Cell& cell, TruthOfTool truth);
+  FileSink(const std::string& tum_file, const std::string& csv_file, OverflowPolicy when_full,
+           const Cell& cell, GroundTruthOfTool truth);
   ~FileSink() { close(); }
   FileSink(const FileSink&) = delete;
   FileSink& operator=(const FileSink&) = delete;
 
-  // Call from one thread. No heap, no lock; WhenFull::wait sleeps while the ring is full.
-  // `newest_frame`: see OutputFigures::add().
+  // Call from one thread. No heap, no lock; OverflowPolicy::wait sleeps while the ring is full.
+  // `newest_frame`: see OutputStatistics::add().
   void offer(const PoseSample& sample, std::optional<Time> newest_frame) noexcept;
 
   // Writes the queued samples and closes the files. Returns the first error message, or an empty
@@ -46,19 +46,19 @@ class FileSink {
 
  private:
   void run();
-  bool write_waiting();
+  bool write_queued();
   void count_lost() noexcept;
 
-  struct Offered {
+  struct QueuedSample {
     PoseSample sample;
     std::optional<Time> newest_frame;
   };
-  graph::Ring<Offered, k_ring_capacity> ring_;
-  OutputFigures figures_;
+  graph::Ring<QueuedSample, k_ring_capacity> ring_;
+  OutputStatistics figures_;
   std::unique_ptr<TumFile> tum_;
   std::unique_ptr<CsvFile> csv_;
-  WhenFull when_full_;
-  std::atomic<std::int64_t> waiting_{0};
+  OverflowPolicy when_full_;
+  std::atomic<std::int64_t> queued_{0};
   std::atomic<std::uint64_t> lines_lost_{0};
   std::atomic<bool> ending_{false};
   std::thread thread_;

@@ -44,11 +44,11 @@ int last_node(int after_node) {
   return last;
 }
 
-void give(const ArrivedFrame& arrived, Tracker& tracker) noexcept {
+void set_inputs(const ArrivedFrame& arrived, Tracker& tracker) noexcept {
   tracker.input<Frame>() = arrived.frame;
   tracker.input<HeadPose>() = arrived.head;
 }
-void give(const ArrivedFrame& arrived, MarkerTracker& tracker) noexcept {
+void set_inputs(const ArrivedFrame& arrived, MarkerTracker& tracker) noexcept {
   FrameStamp& stamp = tracker.input<FrameStamp>();
   stamp = overrun_stamp(arrived.frame);
   stamp.reason = arrived.markers->reason;
@@ -67,7 +67,7 @@ FrameGroupOf<G>::FrameGroupOf(const Cell& cell, graph::TripleBuffer<ToolSet>& to
       now_(std::move(now)),
       runner_(&runner),
       lane_(lane),
-      robot_on_body_(cell.robot_given && cell.robot_in_reference),
+      robot_on_body_(cell.robot_valid && cell.robot_in_reference),
       T_body_robot_(cell.T_world_robot),
       lost_after_(cell.lost_after) {
   configure(cell, *tracker_);
@@ -82,7 +82,7 @@ void FrameGroupOf<G>::process(const ArrivedFrame& arrived, const ChoiceRecord* r
     (void)group_.release(arrived.frame.mid_exposure.nanoseconds);
   }
   if (method_ == nullptr) {
-    give(arrived, *tracker_);
+    set_inputs(arrived, *tracker_);
     const std::uint64_t sequence = arrived.frame.sequence;
     overrun_ = recorded != nullptr
                    ? runner_->run_as(*tracker_, recorded->overrun,
@@ -93,13 +93,13 @@ void FrameGroupOf<G>::process(const ArrivedFrame& arrived, const ChoiceRecord* r
   Estimates& slot = estimates_.write_slot();
   newest_ = &slot;
   if (overrun_.happened()) {
-    answer(arrived);
+    publish_substitute(arrived);
   } else {
     slot = method_ != nullptr ? method_->process(arrived) : tracker_->template output<Estimates>();
     in_time_ = &slot;
     publish();
   }
-  if (method_ == nullptr) runner_->settle(*tracker_);
+  if (method_ == nullptr) runner_->finish_activation(*tracker_);
   publish_transforms(arrived.head);
   if (lane_ != nullptr) record(arrived);
 }
@@ -110,12 +110,12 @@ void FrameGroupOf<G>::publish() noexcept {
 }
 
 template <class G>
-void FrameGroupOf<G>::answer(const ArrivedFrame& arrived) noexcept {
+void FrameGroupOf<G>::publish_substitute(const ArrivedFrame& arrived) noexcept {
   const OverrunFrame frame{overrun_stamp(arrived.frame), arrived.head, lost_after_};
   Estimates& slot = estimates_.write_slot();
   if (substitute(overrun_.policy, frame, *in_time_, slot)) {
-    if (in_time_ != kept_.get()) *kept_ = *in_time_;
-    in_time_ = kept_.get();
+    if (in_time_ != last_in_time_copy_.get()) *last_in_time_copy_ = *in_time_;
+    in_time_ = last_in_time_copy_.get();
     publish();
   } else {  // the slot remains the writer's, which overwrites it for the next version
     slot.tool_count = 0;
@@ -127,7 +127,7 @@ void FrameGroupOf<G>::answer(const ArrivedFrame& arrived) noexcept {
 template <class G>
 void FrameGroupOf<G>::publish_transforms(const HeadPose& head) const noexcept {
   if (dds_ == nullptr) return;
-  const bool known = robot_on_body_ && newest_->reference_known;
+  const bool known = robot_on_body_ && newest_->has_reference;
   (void)dds_->offer_frame(
       {head, known, known ? newest_->T_world_reference * T_body_robot_ : Pose{}});
 }

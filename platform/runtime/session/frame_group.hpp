@@ -59,7 +59,7 @@ class FrameGroupOf {
 
  private:
   void publish() noexcept;
-  void answer(const ArrivedFrame& arrived) noexcept;
+  void publish_substitute(const ArrivedFrame& arrived) noexcept;
   void record(const ArrivedFrame& arrived) noexcept;
   void publish_transforms(const HeadPose& head) const noexcept;
 
@@ -71,11 +71,11 @@ class FrameGroupOf {
   // they remain in the slot in which they were published. The writer's slot is a different one,
   // since only publish() exchanges slots. At the earliest, publishing the next version gives this
   // slot back to the writer, whichever version the reader takes meanwhile. If the next version is a
-  // substitute, they are copied to `kept_` before that, since the next consecutive overrun needs
-  // them again.
-  std::unique_ptr<Estimates> kept_ = std::make_unique<Estimates>();
-  const Estimates* in_time_ = kept_.get();
-  const Estimates* newest_ = kept_.get();
+  // substitute, they are copied to `last_in_time_copy_` before that, since the next consecutive
+  // overrun needs them again.
+  std::unique_ptr<Estimates> last_in_time_copy_ = std::make_unique<Estimates>();
+  const Estimates* in_time_ = last_in_time_copy_.get();
+  const Estimates* newest_ = last_in_time_copy_.get();
   Clock now_;
   GroupRunner<G>* runner_;
   RecorderLane* lane_;

@@ -19,7 +19,7 @@ namespace glint {
 struct MarkerFrame;
 
 struct ArrivedFrame {
-  Frame frame;  // pixels are valid until give_back()
+  Frame frame;  // pixels are valid until release_pixels()
   HeadPose head;
   int slot = -1;                         // the source's index of the pixel buffer
   const MarkerFrame* markers = nullptr;  // of a recording without pixels: its detected markers
@@ -51,7 +51,7 @@ class FrameSource {
   // Blocks until a frame has arrived; returns false if there are no more. The only blocking call of
   // the frame group.
   [[nodiscard]] virtual bool wait(ArrivedFrame& arrived) = 0;
-  virtual void give_back(const ArrivedFrame& arrived) noexcept = 0;
+  virtual void release_pixels(const ArrivedFrame& arrived) noexcept = 0;
 
   // late(): whether the newest frame due at this time arrived late or has not arrived yet.
   // late_frames(): number of late frames. Both thread-safe.
@@ -65,12 +65,13 @@ class FrameSource {
   [[nodiscard]] virtual double delivered_part() const noexcept { return 0; }
   // Ground truth of each delivered frame, in the order of delivery; complete once wait() has
   // returned false. Empty: the source has no ground truth.
-  [[nodiscard]] virtual const std::vector<FrameTruth>& truths() const noexcept {
-    static const std::vector<FrameTruth> none;
+  [[nodiscard]] virtual const std::vector<FrameGroundTruth>& ground_truths() const noexcept {
+    static const std::vector<FrameGroundTruth> none;
     return none;
   }
   // True T_world_tool of the cell's tool; nullopt: no ground truth at that time. Thread-safe.
-  [[nodiscard]] virtual std::optional<Pose> truth_of_tool(int /*tool*/, Time /*time*/) const {
+  [[nodiscard]] virtual std::optional<Pose> ground_truth_of_tool(int /*tool*/,
+                                                                 Time /*time*/) const {
     return std::nullopt;
   }
   // Offset from session time to Unix time, if the frames' time stamps define it; for a run in

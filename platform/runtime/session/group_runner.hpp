@@ -24,8 +24,9 @@ struct WatchSettings {
 
 template <class G>
 struct RunnerSettings {
-  graph::PlanTables<G> plan = graph::plan_by_rule<G>(1);
-  std::vector<ThreadSettings> others;  // one for each worker of the schedule beyond the first
+  graph::ScheduleTables<G> plan = graph::default_schedule<G>(1);
+  std::vector<ThreadSettings>
+      worker_threads;  // one for each worker of the schedule beyond the first
   WatchSettings watch;
   std::vector<Injection> injections;
   std::vector<std::int64_t> bounds_ns;  // by node, for the trace; empty: no board file
@@ -69,15 +70,16 @@ class GroupRunner {
                            traces_.empty() ? nullptr : traces_[w].get());
     }
     if (workers > 1) {
-      executor_ =
-          std::make_unique<PlannedExecutor<G>>(settings_.plan, settings_.others, k_spins_max);
+      executor_ = std::make_unique<PlannedExecutor<G>>(settings_.plan, settings_.worker_threads,
+                                                       k_spins_max);
     }
   }
 
   GroupRunner(const GroupRunner&) = delete;  // its probes point into it
   GroupRunner& operator=(const GroupRunner&) = delete;
 
-  // Returns the overrun decision of this activation; {}: it was in time. Call settle() after it.
+  // Returns the overrun decision of this activation; {}: it was in time. Call finish_activation()
+  // after it.
   [[nodiscard]] graph::OverrunDecision run(G& graph, const ActivationStart& start) noexcept {
     if (!settings_.watch.on && traces_.empty() && settings_.injections.empty()) {
       run_plain(graph);
@@ -98,8 +100,8 @@ class GroupRunner {
     }
     if (NodeTrace* const trace = probes_[0].trace()) {
       if (decision.happened()) {
-        trace->note(decision.kind == graph::OverrunKind::missed ? k_span_overran
-                                                                : k_span_will_miss);
+        trace->set_flag(decision.kind == graph::OverrunKind::missed ? k_span_overran
+                                                                    : k_span_will_miss);
       }
       trace->end_activation();
     }
@@ -107,10 +109,10 @@ class GroupRunner {
   }
 
   // Replay: an activation with a recorded overrun ends after node `last`; -1: runs no node. Call
-  // settle() after it.
+  // finish_activation() after it.
   graph::OverrunDecision run_as(G& graph, graph::OverrunDecision recorded, int last) noexcept {
-    by_workers_ = !recorded.happened();
-    if (by_workers_) {
+    ran_on_all_workers_ = !recorded.happened();
+    if (ran_on_all_workers_) {
       run_plain(graph);
       return recorded;
     }
@@ -124,9 +126,9 @@ class GroupRunner {
   }
 
   // Call after the output has left. Waits until no worker is inside the graph.
-  void settle(G& graph) noexcept {
-    if (executor_ == nullptr || !by_workers_) return;
-    executor_->settle(graph);
+  void finish_activation(G& graph) noexcept {
+    if (executor_ == nullptr || !ran_on_all_workers_) return;
+    executor_->finish_activation(graph);
     for (std::size_t w = 1; w < traces_.size(); ++w) traces_[w]->end_activation();
   }
 
@@ -140,7 +142,7 @@ class GroupRunner {
   [[nodiscard]] const graph::OverrunDecision& last_overrun() const noexcept {
     return last_overrun_;
   }
-  [[nodiscard]] std::uint64_t late_waits() const noexcept {
+  [[nodiscard]] std::uint64_t overlong_waits() const noexcept {
     return executor_ == nullptr ? 0 : executor_->overruns();
   }
   [[nodiscard]] std::vector<ThreadReport> reports() const {
@@ -181,7 +183,7 @@ class GroupRunner {
   std::vector<std::unique_ptr<NodeTrace>> traces_;
   std::vector<NodeProbe> probes_;
   std::unique_ptr<PlannedExecutor<G>> executor_;
-  bool by_workers_ = true;  // whether the last activation ran on all workers
+  bool ran_on_all_workers_ = true;  // whether the last activation ran on all workers
   OverrunCounts counts_;
   graph::OverrunDecision last_overrun_;
 };

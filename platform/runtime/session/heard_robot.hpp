@@ -22,11 +22,11 @@
 
 namespace glint {
 
-class HeardRobot {
+class RobotLinkPoses {
  public:
-  HeardRobot() = default;
+  RobotLinkPoses() = default;
   // `given`: poses of the model's links until joints are received.
-  HeardRobot(const RobotCloud& model, const LinkPoses& given, Duration lost_after)
+  RobotLinkPoses(const RobotCloud& model, const LinkPoses& given, Duration lost_after)
       : tree_(model.tree), inputs_(model.inputs), poses_(given), lost_after_(lost_after) {}
 
   // The link poses and the number of the state they are from; 0: as given. The address of the poses
@@ -35,42 +35,42 @@ class HeardRobot {
     return {&poses_, static_cast<std::uint64_t>(used_)};
   }
 
-  // Recomputes the link poses if a new state was received. No heap; at most k_heard_joints_max
+  // Recomputes the link poses if a new state was received. No heap; at most k_received_joints_max
   // names and k_robot_joints_max joints, once per image. FollowRobot transforms the model's many
   // points. Requires that no other thread reads the poses meanwhile.
-  void update(graph::TripleBuffer<HeardJoints>& heard) noexcept {
+  void update(graph::TripleBuffer<ReceivedJoints>& joint_states) noexcept {
     const std::size_t count = inputs_.size();
-    if (count == 0 || !heard.sample()) return;
+    if (count == 0 || !joint_states.sample()) return;
     const std::span<double> positions = std::span(positions_).first(count);
-    const std::size_t found = positions_of(heard.value(), inputs_, positions);
+    const std::size_t found = positions_of(joint_states.value(), inputs_, positions);
     if (found < count) {
-      ++passed_over_;
-      if (lacking_ == k_none) lacking_ = found;
+      ++skipped_;
+      if (missing_joint_ == k_none) missing_joint_ = found;
       return;
     }
     const Reason reason = forward_kinematics(tree_, positions, poses_);
     if (reason != Reason::none) {
-      ++passed_over_;
+      ++skipped_;
       if (unusable_ == Reason::none) unusable_ = reason;
       return;
     }
     ++used_;
-    arrival_ = Time{heard.time_ns()};
+    arrival_ = Time{joint_states.time_ns()};
   }
 
   // Returns whether the link poses are valid at `time`, on the clock of the states' arrival. False
   // if joints were received and the state behind the poses is too old.
-  [[nodiscard]] bool is_known_at(Time time) const noexcept {
+  [[nodiscard]] bool is_valid_at(Time time) const noexcept {
     return used_ == 0 || time - arrival_ <= lost_after_;
   }
 
   // Number of states that posed the links, and of states that could not.
   [[nodiscard]] std::int64_t used() const noexcept { return used_; }
-  [[nodiscard]] std::int64_t passed_over() const noexcept { return passed_over_; }
+  [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
   // First missing joint of the first incomplete state; null: no state was incomplete. Thread-safe,
   // as is unusable().
-  [[nodiscard]] const std::string* lacking() const noexcept {
-    const std::size_t joint = lacking_;
+  [[nodiscard]] const std::string* missing_joint() const noexcept {
+    const std::size_t joint = missing_joint_;
     return joint == k_none ? nullptr : &inputs_[joint];
   }
   // Why the first complete but unusable state could not pose the links; Reason::none: all could.
@@ -85,8 +85,8 @@ class HeardRobot {
   Duration lost_after_;
   Time arrival_;  // of the state behind the poses
   std::array<double, k_robot_joints_max> positions_{};
-  std::int64_t used_ = 0, passed_over_ = 0;
-  std::atomic<std::size_t> lacking_{k_none};
+  std::int64_t used_ = 0, skipped_ = 0;
+  std::atomic<std::size_t> missing_joint_{k_none};
   std::atomic<Reason> unusable_{Reason::none};
 };
 

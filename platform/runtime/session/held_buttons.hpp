@@ -25,7 +25,7 @@ static_assert(static_cast<int>(Button::draw) == 0 && static_cast<int>(Button::de
 class HeldButtons {
  public:
   // Call from one thread at a time. The last event of a button counts. `lane` may be null.
-  void take(const ButtonEvent& event, RecorderLane* lane) noexcept {
+  void apply(const ButtonEvent& event, RecorderLane* lane) noexcept {
     const std::uint8_t bit = bit_of(event.button);
     const auto held = static_cast<std::uint8_t>(event.pressed ? now_.held | bit : now_.held & ~bit);
     if (held == now_.held) return;

@@ -6,16 +6,16 @@
 namespace glint {
 
 LabelledMarkers::LabelledMarkers(const Markers& all, const Labeling& labeling, const Tool& tool,
-                                 const MarkerNoise& noise, unsigned without_flags) noexcept {
+                                 const MarkerNoise& noise, unsigned rejected_flags) noexcept {
   for (int i = 0; i < tool.marker_count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (labeling.marker[at] < 0) continue;
     const Marker& marker = all.items[static_cast<std::size_t>(labeling.marker[at])];
-    if ((marker.flags & without_flags) != 0) continue;
+    if ((marker.flags & rejected_flags) != 0) continue;
     const double range_m = centre_range_m(marker, tool);
-    const MarkerSight sight = sight_of(marker, range_m, noise);
+    const MarkerMeasurementModel sight = measurement_model(marker, range_m, noise);
     const Result<WeightedMarker> weighed =
-        weigh_marker(tool.markers_m[at], sight.rays, range_m, sight.variance);
+        whiten_marker(tool.markers_m[at], sight.rays, range_m, sight.variance);
     if (!weighed) continue;
     markers_[count_] = weighed.value;
     rays_[count_] = sight.rays;

@@ -13,16 +13,16 @@ namespace glint {
 
 class LabelledMarkers {
  public:
-  // Omits markers that have one of the flags in `without_flags`.
+  // Omits markers that have one of the flags in `rejected_flags`.
   LabelledMarkers(const Markers& all, const Labeling& labeling, const Tool& tool,
-                  const MarkerNoise& noise, unsigned without_flags) noexcept;
+                  const MarkerNoise& noise, unsigned rejected_flags) noexcept;
 
-  [[nodiscard]] std::span<const WeightedMarker> weighed() const {
+  [[nodiscard]] std::span<const WeightedMarker> weighted() const {
     return {markers_.data(), count_};
   }
   [[nodiscard]] std::span<const LocalRays> sights() const { return {rays_.data(), count_}; }
   // Index in the tool of each marker.
-  [[nodiscard]] std::span<const int> numbers() const { return {of_tool_.data(), count_}; }
+  [[nodiscard]] std::span<const int> marker_indices() const { return {of_tool_.data(), count_}; }
 
  private:
   std::array<WeightedMarker, k_markers_per_tool_max> markers_;

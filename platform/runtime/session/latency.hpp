@@ -49,20 +49,20 @@ class NewestLog {
       at = next_;
       entries_[at] = entry;
       next_ = (next_ + 1) % capacity_;
-      ++left_out_;
+      ++overwritten_;
     }
     if (size_of(entry) > size_of(entries_[largest_])) largest_ = at;
   }
   // Unordered beyond the first `capacity`.
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
   // Number of older entries that were overwritten.
-  [[nodiscard]] std::int64_t left_out() const { return left_out_; }
+  [[nodiscard]] std::int64_t overwritten() const { return overwritten_; }
 
  private:
   std::size_t capacity_;
   std::vector<Entry> entries_;
   std::size_t next_ = 0, largest_ = 0;
-  std::int64_t left_out_ = 0;
+  std::int64_t overwritten_ = 0;
 };
 
 using LatencyLog = NewestLog<FrameToCan>;

@@ -34,11 +34,11 @@ struct LossSources {
   return frame;
 }
 
-class LossWatch {
+class LossMonitor {
  public:
   static constexpr Duration k_emergency_gap = milliseconds(1000);
 
-  explicit LossWatch(const LossSources& sources) : sources_(sources) {}
+  explicit LossMonitor(const LossSources& sources) : sources_(sources) {}
 
   // Copies the sinks' counts into the counters. No lock, no heap.
   void count() noexcept {
@@ -53,7 +53,7 @@ class LossWatch {
   }
   // Returns a kind that lost more than its last emergency frame reported, and marks the loss as
   // reported.
-  [[nodiscard]] std::optional<LossKind> take_due(Time tick) noexcept {
+  [[nodiscard]] std::optional<LossKind> next_due_report(Time tick) noexcept {
     if (sources_.counters == nullptr) return {};
     for (const LossKind kind : {LossKind::dds, LossKind::recording, LossKind::files}) {
       Reported& reported = reported_[static_cast<std::size_t>(kind)];

@@ -48,16 +48,16 @@ void add_dds(const SinkOutcome& outcome, Losses& losses) {
     losses.add(LossKind::dds, dds.ring_dropped,
                counted(dds.ring_dropped, "samples not written: no room, or refused by DDS"));
   }
-  if (dds.others_lost > 0) {
-    losses.add(LossKind::dds, dds.others_lost,
-               counted(dds.others_lost, "poses and transforms not written"));
+  if (dds.poses_and_transforms_lost > 0) {
+    losses.add(LossKind::dds, dds.poses_and_transforms_lost,
+               counted(dds.poses_and_transforms_lost, "poses and transforms not written"));
   }
   if (outcome.dds_was_read && outcome.dds_reader.missed > 0) {
     losses.add(LossKind::dds, outcome.dds_reader.missed,
                counted(outcome.dds_reader.missed, "samples written, but not received"));
   }
-  if (!outcome.dds_not_read.empty()) {
-    losses.add(LossKind::dds, 0, "what was received is unknown: " + outcome.dds_not_read);
+  if (!outcome.dds_reader_error.empty()) {
+    losses.add(LossKind::dds, 0, "what was received is unknown: " + outcome.dds_reader_error);
   }
 }
 
@@ -79,9 +79,9 @@ std::vector<Loss> losses_of(const SinkOutcome& outcome) {
   add_can(outcome.can, losses);
   add_dds(outcome, losses);
   add_recording(outcome.recording, losses);
-  if (outcome.files_lost > 0 || !outcome.files_wrong.empty()) {
+  if (outcome.files_lost > 0 || !outcome.files_error.empty()) {
     const std::string why =
-        outcome.files_wrong.empty() ? "no room in the queue" : cause(outcome.files_wrong);
+        outcome.files_error.empty() ? "no room in the queue" : cause(outcome.files_error);
     losses.add(LossKind::files, outcome.files_lost,
                counted(outcome.files_lost, "lines not written: ") + why);
   }

@@ -80,7 +80,7 @@ class NodeProbe {
     }
     if (trace_ == nullptr) return;
     trace_->on_node_end(node);
-    if (injected) trace_->note(k_span_injected);
+    if (injected) trace_->set_flag(k_span_injected);
   }
   [[nodiscard]] NodeTrace* trace() noexcept { return trace_; }
 

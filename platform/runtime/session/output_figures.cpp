@@ -47,16 +47,16 @@ double quantile(std::span<const std::uint64_t> counts, double share) {
   return 0;
 }
 
-OutputFigures::OutputFigures(const Cell& cell, TruthOfTool truth)
+OutputStatistics::OutputStatistics(const Cell& cell, GroundTruthOfTool truth)
     : cell_(cell), truth_(std::move(truth)), gap_(cell.camera.period) {}
 
-int OutputFigures::rate_of(Duration gap) const {
+int OutputStatistics::rate_of(Duration gap) const {
   const std::int64_t halves =
       2 * gap.nanoseconds / std::max<std::int64_t>(1, cell_.camera.period.nanoseconds);
   return halves < 3 ? 0 : halves < 9 ? 1 : 2;
 }
 
-void OutputFigures::add(const PoseSample& sample, std::optional<Time> newest_frame) {
+void OutputStatistics::add(const PoseSample& sample, std::optional<Time> newest_frame) {
   if (newest_frame && newest_frame != newest_) {
     if (newest_) {
       gap_ = *newest_frame - *newest_;
@@ -67,7 +67,7 @@ void OutputFigures::add(const PoseSample& sample, std::optional<Time> newest_fra
     newest_ = newest_frame;
   }
   const Duration since = newest_ ? std::max(gap_, sample.tick - *newest_) : gap_;
-  RateFigures& figures = figures_.tools[sample.tool][static_cast<std::size_t>(rate_of(since))];
+  RateStatistics& figures = figures_.tools[sample.tool][static_cast<std::size_t>(rate_of(since))];
   ++figures.ticks;
   figures.measured += sample.state == TrackState::measured ? 1 : 0;
   figures.predicted += sample.state == TrackState::predicted ? 1 : 0;
@@ -78,7 +78,7 @@ void OutputFigures::add(const PoseSample& sample, std::optional<Time> newest_fra
 }
 
 // True tip pose in the sample's frame, at the time that the pose is predicted to.
-std::optional<Pose> OutputFigures::true_tip(const PoseSample& sample) const {
+std::optional<Pose> OutputStatistics::true_tip(const PoseSample& sample) const {
   if (!truth_ || sample.frame == ReferenceFrame::camera) return std::nullopt;
   const Time time = sample.tick + cell_.actuation_delay;
   std::optional<Pose> tool = truth_(sample.tool, time);
@@ -96,7 +96,7 @@ std::optional<Pose> OutputFigures::true_tip(const PoseSample& sample) const {
   return tool;
 }
 
-void OutputFigures::judge(const PoseSample& sample, OutputErrors& errors) {
+void OutputStatistics::judge(const PoseSample& sample, OutputErrors& errors) {
   const std::optional<Pose> truth = true_tip(sample);
   if (!truth) return;
   const Vector3 shift = sample.pose.translation - truth->translation;

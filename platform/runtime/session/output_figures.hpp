@@ -17,11 +17,11 @@
 namespace glint {
 
 // True T_world_tool of the cell's tool at a session time; nullopt: no ground truth.
-using TruthOfTool = std::function<std::optional<Pose>(int tool, Time time)>;
+using GroundTruthOfTool = std::function<std::optional<Pose>(int tool, Time time)>;
 
-inline constexpr int k_frame_rates = 3;  // nominal, reduced, low
-inline constexpr int k_ages = 512;       // bins of 1 ms; the last one holds all larger values
-inline constexpr int k_errors = 2048;    // bins of 0.1 mm; likewise
+inline constexpr int k_frame_rates = 3;    // nominal, reduced, low
+inline constexpr int k_age_bins = 512;     // bins of 1 ms; the last one holds all larger values
+inline constexpr int k_error_bins = 2048;  // bins of 0.1 mm; likewise
 
 // Errors of poses with ground truth, at the time that they are predicted to, in the pose's frame.
 struct OutputErrors {
@@ -32,12 +32,12 @@ struct OutputErrors {
   double stated_m2 = 0, stated_rad2 = 0, random_m2 = 0, random_rad2 = 0;
   double log_score = 0;  // sum of -ln of the stated Gaussian density at the true pose, in m and rad
   double largest_m = 0;
-  std::array<std::uint64_t, k_errors> histogram{};
+  std::array<std::uint64_t, k_error_bins> histogram{};
 };
 
-struct RateFigures {
+struct RateStatistics {
   std::uint64_t ticks = 0, measured = 0, predicted = 0;  // the others had no pose
-  std::array<std::uint64_t, k_ages> ages{};              // of poses
+  std::array<std::uint64_t, k_age_bins> ages{};          // of poses
   double largest_age_sigma_s = 0;
   OutputErrors of_measured, of_predicted;
 };
@@ -45,17 +45,17 @@ struct RateFigures {
 struct OutputByRate {
   std::array<std::uint64_t, k_frame_rates> gaps{};  // between frames
   std::array<double, k_frame_rates> seconds{};      // total time
-  std::array<std::array<RateFigures, k_frame_rates>, k_tools_max> tools{};
+  std::array<std::array<RateStatistics, k_frame_rates>, k_tools_max> tools{};
 };
 
 // The given quantile of a histogram, in bins.
 [[nodiscard]] double quantile(std::span<const std::uint64_t> counts, double share);
 
-class OutputFigures {
+class OutputStatistics {
  public:
   // Requires that the simulator's world is the cell's and that its reference body is the cell's
   // reference tool.
-  OutputFigures(const Cell& cell, TruthOfTool truth);
+  OutputStatistics(const Cell& cell, GroundTruthOfTool truth);
 
   // Call once per sample, in the order of the ticks. `newest_frame`: arrival of the newest frame at
   // that time; nullopt before the first.
@@ -69,7 +69,7 @@ class OutputFigures {
   [[nodiscard]] int rate_of(Duration gap) const;
 
   const Cell& cell_;
-  TruthOfTool truth_;
+  GroundTruthOfTool truth_;
   std::optional<Time> newest_;
   Duration gap_;
   OutputByRate figures_;

@@ -25,7 +25,7 @@ RadiusRange radii(const ToolSet& tools) {
 
 // A flat marker is visible up to 75 degrees off its normal and is then narrower: half of its disc
 // is as likely as the complete disc.
-constexpr double k_flat_part_min = 0.4;
+constexpr double k_flat_visible_part_min = 0.4;
 
 MarkerOptics marker_optics(const Cell& cell) {
   const Camera& camera = cell.camera;
@@ -35,7 +35,7 @@ MarkerOptics marker_optics(const Cell& cell) {
   optics.radius_max_m = radius.largest_m;
   for (int t = 0; t < cell.tools.count; ++t) {
     if (cell.tools.items[static_cast<std::size_t>(t)].shape == MarkerShape::disc)
-      optics.visible_part_min = k_flat_part_min;
+      optics.visible_part_min = k_flat_visible_part_min;
   }
   optics.focal_px = camera.model.fx;
   optics.range_min_m = camera.range_min_m;
@@ -82,7 +82,7 @@ CorrespondSettings correspond_settings(const Cell& cell) {
   settings.range_min_m = cell.camera.range_min_m;
   settings.range_max_m = cell.camera.range_max_m;
   // A smaller labeling is useful only if another tool may hold the missing marker.
-  settings.fewer_kept = cell.tools.count > 1 ? 1 : 0;
+  settings.fewer_markers_max = cell.tools.count > 1 ? 1 : 0;
   return settings;
 }
 
@@ -182,7 +182,7 @@ void configure(const Cell& cell, Output& output) {
   predict.settings.lost_after = cell.lost_after;
   predict.settings.actuation_delay = cell.actuation_delay;
   predict.settings.motion = cell.motion;
-  predict.settings.stamp_sigma_s = cell.camera.uncertainty.stamp_s;
+  predict.settings.stamp_sigma_s = cell.camera.uncertainty.time_stamp_s;
   predict.settings.robot_covariance.diagonal() << Vector3::Constant(square(cell.robot_sigma_m)),
       Vector3::Constant(square(cell.robot_sigma_rad));
   predict.limits = limits_of(cell);
@@ -201,7 +201,7 @@ MarkerNoise declared_noise(const Camera& camera) noexcept {
 
 RobotFrame declared_robot_frame(const Cell& cell) {
   RobotFrame robot;
-  if (!cell.robot_given) return robot;
+  if (!cell.robot_valid) return robot;
   robot.state = RegistrationState::given;
   robot.T_world_robot = cell.T_world_robot;
   robot.in_reference = cell.robot_in_reference;

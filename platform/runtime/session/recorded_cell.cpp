@@ -22,7 +22,7 @@ Vector3 vector_of(const json& item) {
 json as_json(const DepthBias& bias) {
   return {{"offset_m", bias.offset_m},
           {"per_metre", bias.per_metre},
-          {"dim_m", bias.dim_m},
+          {"dim_m", bias.low_signal_m},
           {"range_m", {bias.range_min_m, bias.range_max_m}}};
 }
 DepthBias bias_of(const json& item) {

@@ -44,7 +44,7 @@ class RecordedOrder {
  public:
   // Capacity of the queues. A recording that needs more lacks messages: then the oldest entry is
   // released, and a tick that finds other estimates is counted.
-  static constexpr std::size_t k_frames_held_max = 64, k_ticks_held_max = 1024;
+  static constexpr std::size_t k_frames_queued_max = 64, k_ticks_queued_max = 1024;
 
   // Calls `on_output` with each recorded output record.
   RecordedOrder(RecordingReader& reader, std::function<void(OutputMessage&)> on_output)
@@ -83,7 +83,7 @@ class RecordedOrder {
   [[nodiscard]] std::int64_t frames_without_inputs() const noexcept { return without_inputs_; }
 
  private:
-  struct HeldFrame {
+  struct QueuedFrame {
     FrameMessage frame;  // at level blobs without pixels
     MarkerFrame markers;
     HeadPose head;
@@ -95,11 +95,11 @@ class RecordedOrder {
     const std::uint64_t read = ticks_.front().versions[0];
     if (read <= frame_.choice.activation) return true;
     if (!frames_.empty()) return read < frames_.front().choice.activation;
-    return ended_ || ticks_.size() > k_ticks_held_max;
+    return ended_ || ticks_.size() > k_ticks_queued_max;
   }
   // If no tick is due, the waiting ticks read this frame or a later one.
   [[nodiscard]] bool frame_is_due() const {
-    return !frames_.empty() && (!ticks_.empty() || ended_ || frames_.size() > k_frames_held_max);
+    return !frames_.empty() && (!ticks_.empty() || ended_ || frames_.size() > k_frames_queued_max);
   }
 
   void read() {
@@ -124,14 +124,14 @@ class RecordedOrder {
     }
   }
   void on(FrameMessage& frame) {
-    if (keeps_frames(reader_.level())) hold({std::move(frame), {}, {}, {}});
+    if (records_frames(reader_.level())) enqueue({std::move(frame), {}, {}, {}});
   }
   void on(MarkerFrame& markers) {
-    if (keeps_frames(reader_.level())) return;
-    hold({{markers.mid_exposure, markers.stamp_sigma, markers.arrival, markers.sequence, {}},
-          markers,
-          {},
-          {}});
+    if (records_frames(reader_.level())) return;
+    enqueue({{markers.mid_exposure, markers.stamp_sigma, markers.arrival, markers.sequence, {}},
+             markers,
+             {},
+             {}});
   }
   void on(OutputMessage& output) { on_output_(output); }
   void on(RobotFrameRecord& frame) {
@@ -141,7 +141,7 @@ class RecordedOrder {
   void on(DroppedInput& /*input*/) {}  // its frame is recorded as well
   void on(ButtonEvent& /*event*/) {}   // ticks read the held buttons
 
-  void hold(HeldFrame held) {
+  void enqueue(QueuedFrame held) {
     if (has_gap()) {
       if (!has_head_ || !has_choice_) {
         ++without_inputs_;
@@ -161,9 +161,9 @@ class RecordedOrder {
 
   RecordingReader& reader_;
   std::function<void(OutputMessage&)> on_output_;
-  std::deque<HeldFrame> frames_;
+  std::deque<QueuedFrame> frames_;
   std::deque<ChoiceRecord> ticks_;
-  HeldFrame frame_;  // released last, as are the next two
+  QueuedFrame frame_;  // released last, as are the next two
   ArrivedFrame arrived_;
   ChoiceRecord tick_;
   HeadPose head_;                             // the last one read

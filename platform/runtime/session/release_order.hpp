@@ -58,7 +58,7 @@ class NominalOrder {
 
  private:
   void take_frame() {
-    if (any_frame_) source_.give_back(arrived_);
+    if (any_frame_) source_.release_pixels(arrived_);
     const Time last = until_;
     frame_waits_ = any_frame_ = (stop_ == nullptr || !*stop_) && source_.wait(arrived_);
     frames_ended_ = !frame_waits_;

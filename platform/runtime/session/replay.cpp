@@ -35,15 +35,16 @@ template <class G>
 RunnerSettings<G> runner_settings(int workers) {
   RunnerSettings<G> settings;
   settings.live = false;
-  settings.plan = graph::plan_by_rule<G>(workers);
-  settings.others.assign(static_cast<std::size_t>(settings.plan.workers - 1), {"glint-worker"});
+  settings.plan = graph::default_schedule<G>(workers);
+  settings.worker_threads.assign(static_cast<std::size_t>(settings.plan.workers - 1),
+                                 {"glint-worker"});
   return settings;
 }
 
 // Runs the groups of a run, released as recorded. G: see FrameGroupOf.
 template <class G>
-void decide_again(const Cell& cell, RecordingReader& reader, const ReplayOptions& options,
-                  ReplayResult& result) {
+void recompute(const Cell& cell, RecordingReader& reader, const ReplayOptions& options,
+               ReplayResult& result) {
   RecordComparison comparison;
   // After a gap no record is compared, since the tracker lacks frames from there on.
   RecordedOrder order(reader, [&](OutputMessage& output) {
@@ -129,9 +130,9 @@ ReplayResult replay(const std::string& file, const ReplayOptions& options) {
   if (reader.level() == RecordingLevel::outputs) {
     read_back(reader, result);
   } else if (reader.level() == RecordingLevel::blobs) {
-    decide_again<MarkerTracker>(cell, reader, options, result);
+    recompute<MarkerTracker>(cell, reader, options, result);
   } else {
-    decide_again<Tracker>(cell, reader, options, result);
+    recompute<Tracker>(cell, reader, options, result);
   }
   if (result.records == 0 && result.records_recorded == 0)
     throw InputError(file + ": nothing to replay: " + std::to_string(result.frames) +

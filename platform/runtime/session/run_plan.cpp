@@ -27,10 +27,10 @@ std::vector<PlannedNode> in_order(const Plan& plan, int group) {
 }
 
 template <class G>
-GroupPlan<G> group_plan(const Plan& plan, const TaskModel& model, int group,
-                        const std::string& file) {
+GroupSchedule<G> group_plan(const Plan& plan, const TaskModel& model, int group,
+                            const std::string& file) {
   const auto g = static_cast<std::size_t>(group);
-  GroupPlan<G> result;
+  GroupSchedule<G> result;
   result.priority = plan.groups.at(g).priority;
   const std::vector<PlannedNode> nodes = in_order(plan, group);
   // Worker 0 is the core of the graph's first node, since an activation begins there.
@@ -59,7 +59,7 @@ GroupPlan<G> group_plan(const Plan& plan, const TaskModel& model, int group,
     result.bounds_ns[n] = model.groups.at(g).nodes.at(n).bound_ns;
     result.remaining_ns[n] = end_ns - node.end_ns;
   }
-  if (const graph::PlanFault fault = graph::plan_fault(result.tables); fault.found()) {
+  if (const graph::PlanFault fault = graph::schedule_fault(result.tables); fault.found()) {
     const std::string node =
         fault.node >= 0
             ? name_of_node(graph::Description<G>::nodes[static_cast<std::size_t>(fault.node)])
@@ -84,9 +84,9 @@ std::vector<std::int64_t> remaining_in_order(const std::vector<std::int64_t>& bo
   return remaining_ns;
 }
 
-RunPlan plan_by_rule(const Cell& cell) {
-  RunPlan plan;
-  plan.frame.tables = graph::plan_by_rule<Tracker>(cell.workers);
+RunSchedule schedule_by_rule(const Cell& cell) {
+  RunSchedule plan;
+  plan.frame.tables = graph::default_schedule<Tracker>(cell.workers);
   plan.frame.cores.assign(static_cast<std::size_t>(cell.workers), -1);
   plan.frame.priority = k_frame_priority;
   plan.tick.priority = k_tick_priority;
@@ -94,12 +94,12 @@ RunPlan plan_by_rule(const Cell& cell) {
   return plan;
 }
 
-RunPlan plan_of(const Plan& plan, const TaskModel& model, const std::string& file) {
+RunSchedule schedule_of(const Plan& plan, const TaskModel& model, const std::string& file) {
   if (plan.groups.size() < 2) {
     throw InputError(file + ": found " + std::to_string(plan.groups.size()) +
                      " groups; expected \"frame\" and \"tick\"");
   }
-  RunPlan result;
+  RunSchedule result;
   result.planned = true;
   result.board = plan.board;
   result.plan_file = file;

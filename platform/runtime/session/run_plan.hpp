@@ -18,23 +18,23 @@
 namespace glint {
 
 template <class G>
-struct GroupPlan {
-  graph::PlanTables<G> tables = graph::plan_by_rule<G>(1);
+struct GroupSchedule {
+  graph::ScheduleTables<G> tables = graph::default_schedule<G>(1);
   std::vector<int> cores = {-1};           // by worker; -1: any
   int priority = 0;                        // SCHED_FIFO
   std::vector<std::int64_t> bounds_ns;     // by node; empty: no board file
   std::vector<std::int64_t> remaining_ns;  // by node: from its end to the group's, worst case
 };
 
-struct RunPlan {
+struct RunSchedule {
   bool planned = false;  // by a schedule file
   std::string board, plan_file;
   // In microseconds; 0: no board file.
   double frame_bound_us = 0, tick_bound_us = 0, frame_to_can_bound_us = 0, background_bound_us = 0;
-  std::vector<std::string> doubts;  // why these bounds may not hold
-  GroupPlan<Tracker> frame;
-  GroupPlan<Output> tick;
-  std::optional<GroupPlan<Background>> background;  // if the cell has one
+  std::vector<std::string> caveats;  // why these bounds may not hold
+  GroupSchedule<Tracker> frame;
+  GroupSchedule<Output> tick;
+  std::optional<GroupSchedule<Background>> background;  // if the cell has one
 };
 
 // Fixed priorities: on each core, tick preempts frame and frame preempts background. All are below
@@ -50,10 +50,11 @@ inline constexpr int k_arrival_priority = k_tick_priority + 1;
     const std::vector<std::int64_t>& bounds_ns);
 
 // Schedule by rule, for the cell's number of workers.
-[[nodiscard]] RunPlan plan_by_rule(const Cell& cell);
+[[nodiscard]] RunSchedule schedule_by_rule(const Cell& cell);
 
 // Converts a checked schedule: its first group is the tracker's, the second the output's, the
 // optional third the background's. Throws InputError naming `file` if a worker would wait for ever.
-[[nodiscard]] RunPlan plan_of(const Plan& plan, const TaskModel& model, const std::string& file);
+[[nodiscard]] RunSchedule schedule_of(const Plan& plan, const TaskModel& model,
+                                      const std::string& file);
 
 }  // namespace glint

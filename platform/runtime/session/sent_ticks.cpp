@@ -28,11 +28,11 @@ void SentTicks::settle(std::uint64_t sent) noexcept {
 
 void SentTicks::count(const TickOfFrames& tick) noexcept {
   if (tick.carries) latencies_.add(tick.latency);
-  if (!tick.whole) return;
-  if (left_.ticks++ > 0) left_.longest_gap = std::max(left_.longest_gap, tick.at - last_);
+  if (!tick.all_accepted) return;
+  if (summary_.ticks++ > 0) summary_.longest_gap = std::max(summary_.longest_gap, tick.at - last_);
   last_ = tick.at;
   for (int t = 0; t < tick.tools; ++t) {
-    ToolTicks& tool = left_.tools[static_cast<std::size_t>(t)];
+    ToolTicks& tool = summary_.tools[static_cast<std::size_t>(t)];
     const TrackState state = tick.states[static_cast<std::size_t>(t)];
     if (tool.all() == 0) tool.last_measured = tick.at;
     tool.longest_without_measurement =

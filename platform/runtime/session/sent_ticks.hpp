@@ -22,8 +22,8 @@ struct TickOfFrames {
   std::uint64_t last = 0;  // frames accepted up to its last pose frame
   Time at;                 // send time of its first frame
   int tools = 0;
-  bool whole = false;    // all pose frames were accepted
-  bool carries = false;  // the first tick that carries a frame's estimate
+  bool all_accepted = false;  // all pose frames were accepted
+  bool carries = false;       // the first tick that carries a frame's estimate
   std::array<TrackState, k_tools_max> states{};
   FrameToCan latency;  // if `carries`
 };
@@ -39,7 +39,7 @@ struct ToolTicks {
 };
 
 // Summary for the run's report.
-struct TicksLeft {
+struct SentTicksSummary {
   std::uint64_t ticks = 0;  // with all pose frames sent
   Duration longest_gap;     // between two of these ticks
   std::array<ToolTicks, k_tools_max> tools{};
@@ -61,7 +61,7 @@ class SentTicks {
   void settle(std::uint64_t sent) noexcept;
 
   [[nodiscard]] const LatencyLog& latencies() const noexcept { return latencies_; }
-  [[nodiscard]] const TicksLeft& left() const noexcept { return left_; }
+  [[nodiscard]] const SentTicksSummary& summary() const noexcept { return summary_; }
 
  private:
   void count(const TickOfFrames& tick) noexcept;
@@ -69,7 +69,7 @@ class SentTicks {
   std::vector<TickOfFrames> pending_;  // a ring
   std::uint64_t pushed_ = 0, popped_ = 0;
   LatencyLog latencies_;
-  TicksLeft left_;
+  SentTicksSummary summary_;
   Time last_;
 };
 

@@ -24,7 +24,7 @@ Duration lead_of(const Cell& cell) {
   return milliseconds(much ? 1000 : 300) + (cell.dds.on ? milliseconds(1200) : Duration{});
 }
 
-std::vector<int> cores_of(const RunPlan& plan) {
+std::vector<int> cores_of(const RunSchedule& plan) {
   std::vector<int> cores = plan.frame.cores;
   cores.insert(cores.end(), plan.tick.cores.begin(), plan.tick.cores.end());
   if (plan.background) cores.push_back(plan.background->cores[0]);
@@ -49,7 +49,7 @@ void write_map(BackgroundGroup& background, const std::string& folder, SessionRe
 SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOptions& given) {
   BackgroundScene scene = read_background_scene(cell, given.read_png);
   SessionOptions options = given;
-  if (!options.plan.planned) options.plan = plan_by_rule(cell);
+  if (!options.plan.planned) options.plan = schedule_by_rule(cell);
   SessionResult result;
   // Frames prepared before the session's clock starts cannot be late.
   source.prepare([&options](int ready, int wanted) {
@@ -61,7 +61,7 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
       result.refused.push_back("memory: " + lock.refused);
     }
     result.machine = check_machine(cores_of(options.plan));
-    options.best_effort = result.machine.spoils;
+    options.timing_faults = result.machine.timing_faults;
   }
 
   // Sinks need the offset from session time to Unix time. The epoch is therefore chosen before they
@@ -75,11 +75,13 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
   Clock now = [&nominal_now] { return nominal_now; };
   if (cell.realtime) now = [epoch] { return Time{} + (monotonic_now() - epoch); };
 
-  options.truth = [&source](int tool, Time time) { return source.truth_of_tool(tool, time); };
+  options.truth = [&source](int tool, Time time) {
+    return source.ground_truth_of_tool(tool, time);
+  };
   Sinks sinks(cell, options, unix_offset_ns);
   std::optional<KeyReader> keys;
-  if (options.keys) {
-    keys.emplace(*options.keys, now, [&sinks, &result](const ButtonEvent& event) {
+  if (options.key_terminal) {
+    keys.emplace(*options.key_terminal, now, [&sinks, &result](const ButtonEvent& event) {
       ++result.key_events;
       sinks.offer_button(event);
     });
@@ -90,7 +92,7 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
     trace = std::make_unique<TraceWriter>(file, trace_header(cell, options.plan, unix_offset_ns));
     result.files.push_back(file);
   }
-  const KeptFrames kept{source.frame_count(), source.truths().size()};
+  const KeptFrames kept{source.frame_count(), source.ground_truths().size()};
   auto groups = std::make_unique<SessionGroups>(cell, options, kept, sinks, trace.get(), now,
                                                 unix_offset_ns, std::move(scene));
   if (trace != nullptr) trace->start();
@@ -106,8 +108,8 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
     write_map(*groups->background(), options.out, result);
   }
   groups->report(result);
-  if (!source.truths().empty()) {
-    result.accuracy = judge(result.outcomes, source.truths(), cell.tools);
+  if (!source.ground_truths().empty()) {
+    result.accuracy = evaluate(result.outcomes, source.ground_truths(), cell.tools);
   }
   result.frames_late = source.late_frames();
   result.source = source.report();

@@ -32,11 +32,11 @@ struct SessionOptions : SinkOptions {
   // Factory of the method that replaces the tracker if the cell asks for one; empty: none.
   std::function<std::unique_ptr<FrameMethod>(const Cell&)> method;
   DepthPngReader read_png = nullptr;  // for a background's images; null: rejects PNG
-  RunPlan plan;                       // cores, priorities, bounds; default: by rule
+  RunSchedule plan;                   // cores, priorities, bounds; default: by rule
   std::vector<Injection> injections;  // test delays
   bool trace = false;                 // trace.spans in `out`
   bool write_map = true;              // map.ply in `out`, if the cell has a background
-  std::optional<int> keys;            // KeyTerminal's descriptor; its keys are buttons
+  std::optional<int> key_terminal;    // KeyTerminal's descriptor; its keys are buttons
 };
 
 struct SessionResult : SinkOutcome {
@@ -44,8 +44,8 @@ struct SessionResult : SinkOutcome {
   SourceReport source;
   std::vector<FrameOutcome> outcomes;  // one per delivered frame
   std::vector<FrameToCan> latencies;
-  std::int64_t latencies_left_out = 0;
-  TicksLeft sent;                       // ticks sent over CAN
+  std::int64_t latencies_overwritten = 0;
+  SentTicksSummary sent;                // ticks sent over CAN
   std::uint64_t ticks_source_late = 0;  // without a measurement, while the source was late
   std::int64_t frames = 0;
   std::int64_t frames_tracked = 0;              // with at least one tool seen

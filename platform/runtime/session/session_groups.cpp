@@ -19,8 +19,9 @@ std::unique_ptr<FrameMethod> method_of(const Cell& cell, const SessionOptions& o
 }
 
 template <class G>
-RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, const Cell& cell,
-                                  const SessionOptions& options, TraceWriter* trace) {
+RunnerSettings<G> runner_settings(const GroupSchedule<G>& plan, std::uint8_t group,
+                                  const Cell& cell, const SessionOptions& options,
+                                  TraceWriter* trace) {
   RunnerSettings<G> settings;
   settings.plan = plan.tables;
   settings.group = group;
@@ -29,9 +30,9 @@ RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, 
   settings.trace = trace;
   for (std::size_t w = 1; w < plan.cores.size(); ++w) {
     // Without real time worker 0 is a normal thread on any core; so are the others.
-    settings.others.push_back(cell.realtime
-                                  ? ThreadSettings{"glint-worker", plan.cores[w], plan.priority}
-                                  : ThreadSettings{"glint-worker"});
+    settings.worker_threads.push_back(
+        cell.realtime ? ThreadSettings{"glint-worker", plan.cores[w], plan.priority}
+                      : ThreadSettings{"glint-worker"});
   }
   const bool is_tick = group == k_tick_group;
   for (const Injection& injection : options.injections) {
@@ -43,15 +44,15 @@ RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, 
   settings.watch.on = cell.overrun.watch && (cell.realtime || !settings.injections.empty());
   if (!cell.realtime && settings.watch.on) {
     // Only injected delays advance time: one worker, so that every run makes the same decisions.
-    settings.plan = graph::plan_by_rule<G>(1);
-    settings.others.clear();
+    settings.plan = graph::default_schedule<G>(1);
+    settings.worker_threads.clear();
     settings.watch.remaining_ns = remaining_in_order(plan.bounds_ns);
   }
   return settings;
 }
 
 template <class G>
-nlohmann::ordered_json group_json(const char* name, const GroupPlan<G>& plan) {
+nlohmann::ordered_json group_json(const char* name, const GroupSchedule<G>& plan) {
   nlohmann::ordered_json nodes = nlohmann::ordered_json::array(), cores = nodes;
   int number = 0;
   for (const graph::NodeInfo& node : graph::Description<G>::nodes) {
@@ -94,7 +95,7 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, Ke
         cell, *options.plan.background, trace, std::move(scene),
         RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr,
                    &sinks.robot_notes(), sinks.dds()});
-    if (sinks.inputs() != nullptr) background_->hear(sinks.inputs()->joints());
+    if (sinks.inputs() != nullptr) background_->set_joint_source(sinks.inputs()->joints());
   }
 }
 
@@ -105,7 +106,7 @@ void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
   if (processed_ < outcomes_.size()) {
     outcomes_[processed_] = outcome_of(newest, frame_.tracker());
   }
-  if (frame_.tracker() != nullptr) calibration_.see(*frame_.tracker());
+  if (frame_.tracker() != nullptr) calibration_.add_frame(*frame_.tracker());
   ++processed_;
   if (decisions_.add(arrived.frame.sequence, newest, frame_runner_)) ++tracked_;
   if (background_ == nullptr) return;
@@ -128,11 +129,11 @@ void SessionGroups::report(SessionResult& result) {
   result.noise = frame_.newest().noise;
   result.calibration = calibration_.findings();
   const SentTicks& sent = tick_.sent();
-  result.sent = sent.left();
+  result.sent = sent.summary();
   result.latencies = sent.latencies().entries();
-  result.latencies_left_out = sent.latencies().left_out();
+  result.latencies_overwritten = sent.latencies().overwritten();
   result.ticks_source_late = tick_.ticks_source_late();
-  result.worker_overruns = frame_runner_.late_waits() + tick_runner_.late_waits();
+  result.worker_overruns = frame_runner_.overlong_waits() + tick_runner_.overlong_waits();
   result.frame_overruns = frame_runner_.overruns();
   result.tick_overruns = tick_runner_.overruns();
   if (background_ != nullptr) result.background = background_->counts();
@@ -146,7 +147,7 @@ void SessionGroups::report(SessionResult& result) {
   }
 }
 
-std::string trace_header(const Cell& cell, const RunPlan& plan, std::int64_t epoch_unix_ns) {
+std::string trace_header(const Cell& cell, const RunSchedule& plan, std::int64_t epoch_unix_ns) {
   nlohmann::ordered_json groups{group_json("frame", plan.frame), group_json("tick", plan.tick)};
   if (plan.background) groups.push_back(group_json("background", *plan.background));
   return nlohmann::ordered_json{{"groups", groups},

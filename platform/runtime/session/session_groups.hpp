@@ -38,8 +38,8 @@ class SessionGroups {
   void stop_safe() noexcept { tick_.stop_safe(); }
 
   // Applies scheduled and requested changes up to `now`. Do not call on a real-time thread.
-  void reach(Time now) {
-    roster_.reach(now);
+  void apply_changes(Time now) {
+    roster_.apply_changes(now);
     calibration_.review(now, *calibration_notes_);
   }
 
@@ -64,8 +64,8 @@ class SessionGroups {
   FrameGroup frame_;
   TickGroup tick_;
   DecisionHash decisions_;
-  CalibrationWatch calibration_;
-  CalibrationNotes* calibration_notes_;
+  CalibrationMonitor calibration_;
+  CalibrationFindingsStore* calibration_notes_;
   std::vector<FrameOutcome> outcomes_;
   std::size_t processed_ = 0, tracked_ = 0;
 };
@@ -83,7 +83,7 @@ void run_in_order(const Cell& cell, Time& now, FrameSource& source, SessionGroup
                   const SessionOptions& options, SessionResult& result);
 
 // First line of the trace file.
-[[nodiscard]] std::string trace_header(const Cell& cell, const RunPlan& plan,
+[[nodiscard]] std::string trace_header(const Cell& cell, const RunSchedule& plan,
                                        std::int64_t epoch_unix_ns);
 
 }  // namespace glint

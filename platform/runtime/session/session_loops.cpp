@@ -36,14 +36,14 @@ void counted(Body body) {
 }
 
 // Lines about the robot that were printed; each is printed once.
-struct PrintedAboutRobot {
+struct PrintedRobotWarnings {
   bool jumped = false, lacking = false, unusable = false, lost = false;
 };
 
 // Prints one line each at: the first rejected jump, the first joint state without one of the
 // model's joints, the first that cannot be posed, and the first image without joints. Do not call
 // on a real-time thread.
-void print_about_robot(const SessionGroups& groups, PrintedAboutRobot& printed) {
+void print_robot_warnings(const SessionGroups& groups, PrintedRobotWarnings& printed) {
   const BackgroundGroup* const background = groups.background();
   if (background == nullptr) return;
   if (!printed.jumped && background->jumps() > 0) {
@@ -52,7 +52,7 @@ void print_about_robot(const SessionGroups& groups, PrintedAboutRobot& printed) 
                  "the robot is seen where no drift takes it: refused; the run goes on from where "
                  "it was\n");
   }
-  if (const std::string* const joint = background->lacking_joint(); joint && !printed.lacking) {
+  if (const std::string* const joint = background->missing_joint(); joint && !printed.lacking) {
     printed.lacking = true;
     std::fprintf(stderr,
                  "%s: a state without a position of joint '%s': its model stays where it was\n",
@@ -88,13 +88,13 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
 
   PeriodicLoop loop(epoch, tick_period_of(cell));
   WakeUpLog wake_ups(WakeUpLog::k_entries_max);
-  const RunPlan& plan = options.plan;
+  const RunSchedule& plan = options.plan;
   RealTimeThread frame_thread({"glint-frame", plan.frame.cores[0], plan.frame.priority}, [&] {
     counted([&] {
       ArrivedFrame arrived;
       while (!ends() && source.wait(arrived)) {
         groups.process(arrived);
-        source.give_back(arrived);
+        source.release_pixels(arrived);
       }
       end_ns = (arrived.frame.arrival + cell.lost_after).nanoseconds;
     });
@@ -126,22 +126,22 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
         [background, epoch, &ended] { counted([&] { background->run(epoch, ended); }); });
   }
   const double all_s = (source.duration() + cell.lost_after).seconds();
-  PrintedAboutRobot printed;
+  PrintedRobotWarnings printed;
   while (!frames_done || (reached_ns + tick_period_of(cell).nanoseconds < end_ns && !ends())) {
     // The source may be late; the ticks are not.
     const double reached_s = static_cast<double>(reached_ns) * 1e-9;
     if (options.progress) {
       options.progress(std::min(reached_s, source.delivered_part() * all_s), all_s);
     }
-    groups.reach(Time{reached_ns});
-    print_about_robot(groups, printed);
+    groups.apply_changes(Time{reached_ns});
+    print_robot_warnings(groups, printed);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   frame_thread.join();
   tick_thread.join();
   ended = true;
   if (background_thread) background_thread->join();
-  if (ran_away) result.fault = k_ran_away;
+  if (ran_away) result.fault = k_no_sleep_message;
   result.ticks_late = static_cast<std::int64_t>(loop.late());
   result.ticks_skipped = static_cast<std::int64_t>(loop.skipped());
   result.tick_wake_up_ns = wake_ups.entries();
@@ -157,19 +157,19 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
 void run_in_order(const Cell& cell, Time& now, FrameSource& source, SessionGroups& groups,
                   const SessionOptions& options, SessionResult& result) {
   NominalOrder order(cell, source, options.stop);
-  PrintedAboutRobot printed;
+  PrintedRobotWarnings printed;
   const auto on_tick = [&](const NextRelease& release) {
     now = release.nominal;
     result.duration_s = (now - Time{}).seconds();
     ++result.ticks;
-    if (groups.background() != nullptr) groups.background()->reach(now);
+    if (groups.background() != nullptr) groups.background()->run_due_slices(now);
     groups.tick(release.tick, now, now);
   };
   const auto on_frame = [&](const NextRelease& release) {
     now = release.nominal;
-    groups.reach(now);
+    groups.apply_changes(now);
     groups.process(*release.frame);
-    print_about_robot(groups, printed);
+    print_robot_warnings(groups, printed);
     if (options.progress) options.progress((now - Time{}).seconds(), source.duration().seconds());
   };
   run_releases(order, on_frame, on_tick);

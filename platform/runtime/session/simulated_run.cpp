@@ -11,7 +11,7 @@
 namespace glint {
 
 SessionOptions with_desktop_parts(SessionOptions options) {
-  options.method = [](const Cell& of) { return std::make_unique<SeedMethod>(of); };
+  options.method = [](const Cell& of) { return std::make_unique<BaselineMethod>(of); };
   options.read_png = read_depth_png;
   return options;
 }

@@ -17,32 +17,32 @@
 namespace glint {
 
 struct SinkOptions {
-  std::string out = "out";               // folder for relative file names of the cell
-  bool with_reader = true;               // a separate DDS reader process counts received samples
-  std::vector<std::string> best_effort;  // this machine's timing faults, stated in all outputs
-  bool by_rate = true;                   // statistics by frame rate
-  TruthOfTool truth{};                   // of run_session()'s source, for `by_rate`
+  std::string out = "out";                 // folder for relative file names of the cell
+  bool with_reader = true;                 // a separate DDS reader process counts received samples
+  std::vector<std::string> timing_faults;  // this machine's timing faults, stated in all outputs
+  bool by_rate = true;                     // statistics by frame rate
+  GroundTruthOfTool truth{};               // of run_session()'s source, for `by_rate`
 };
 
 // Numbers of tool change requests from other DDS participants.
-struct ToolOrders {
+struct ToolChangeCounts {
   std::uint64_t added = 0, removed = 0;
 };
 
 struct SinkOutcome {
   CanSinkCounts can;
-  double can_bus_load = 0;      // computed, of the bus that the cell declares
-  ButtonFrameCounts can_heard;  // button frames received
-  std::string can_not_heard;    // why no button frames can arrive, if the cell names one
+  double can_bus_load = 0;         // computed, of the bus that the cell declares
+  ButtonFrameCounts can_received;  // button frames received
+  std::string can_receive_error;   // why no button frames can arrive, if the cell names one
   DdsCounts dds;
-  HeardCounts heard;                    // received over DDS
-  std::vector<ToolOrders> tool_orders;  // by tool; empty: no DDS
+  ReceivedCounts dds_received;                       // received over DDS
+  std::vector<ToolChangeCounts> tool_change_counts;  // by tool; empty: no DDS
   ReaderResult dds_reader;
   bool dds_was_read = false;
-  std::string dds_not_read;  // why the reader process has no result, if there was one
+  std::string dds_reader_error;  // why the reader process has no result, if there was one
   std::shared_ptr<const OutputByRate> by_rate;  // null: not requested
   std::uint64_t files_lost = 0;                 // lines missing in TUM and CSV files
-  std::string files_wrong;                      // first write error of these
+  std::string files_error;                      // first write error of these
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;

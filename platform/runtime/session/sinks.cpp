@@ -50,12 +50,12 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
   settings.domain = cell.dds.domain;
   settings.interface = cell.dds.interface;
   settings.tool_names = names_of(cell.tools);
-  settings.hears_tool_changes = cell.dds.tool_changes;
+  settings.accepts_tool_changes = cell.dds.tool_changes;
   settings.button_timeout = cell.button_timeout;
   settings.tick_period = tick_period(cell);
   settings.actuation_delay = cell.actuation_delay;
-  settings.unix_minus_board = {unix_offset_ns};
-  if (cell.robot_given && !cell.robot_in_reference) {
+  settings.unix_minus_session = {unix_offset_ns};
+  if (cell.robot_valid && !cell.robot_in_reference) {
     settings.static_transforms.push_back(
         {settings.frames.world, settings.frames.robot, cell.T_world_robot});
   }
@@ -70,7 +70,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
   can.directory = out_;
   can.unix_offset_ns = unix_offset_ns;
   can.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
-  can.when_full = cell.realtime ? WhenFull::drop : WhenFull::wait;
+  can.when_full = cell.realtime ? OverflowPolicy::drop : OverflowPolicy::wait;
   can_ = open_can_sink(cell.can.sink, can);
   if (cell.can.sink.rfind("log:", 0) == 0) can_file_ = in_folder(out_, cell.can.sink.substr(4));
 
@@ -83,7 +83,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     info.tool_names = names_of(cell.tools);
     info.facts = {{"compiler", __VERSION__},
                   {"cell", cell.file},
-                  {"best_effort", joined(options.best_effort)}};
+                  {"best_effort", joined(options.timing_faults)}};
     info.attachments = attachments_of(cell);
     RecorderSettings settings;
     settings.when_full = can.when_full;
@@ -105,16 +105,16 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
           [this](const ButtonEvent& event) { offer_button(event); }, cell.button_timeout);
     }
     if (buttons_ == nullptr) {
-      can_not_heard_ = std::string("can.buttons: ") +
-                       (cell.realtime ? cell.can.sink + " is no bus" : "not in real time") +
-                       "; expected socketcan:IF in real time";
+      can_receive_error_ = std::string("can.buttons: ") +
+                           (cell.realtime ? cell.can.sink + " is no bus" : "not in real time") +
+                           "; expected socketcan:IF in real time";
     }
   }
 
   // A run that is faster than real time would only overrun its DDS readers.
   if (cell.dds.on && cell.realtime) {
     DdsSettings settings = dds_settings(cell, unix_offset_ns);
-    settings.best_effort = joined(options.best_effort);
+    settings.timing_faults = joined(options.timing_faults);
     settings.overruns = &overruns_;
     settings.losses = &losses_;
     settings.calibration = &calibration_notes_;
@@ -124,13 +124,14 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
       reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));
     }
     const auto record_button = [this](const ButtonEvent& event) { offer_button(event); };
-    tool_orders_.resize(settings.tool_names.size());
-    const auto hand_on = [this](int tool, bool there) {
-      ToolOrders& orders = tool_orders_[static_cast<std::size_t>(tool)];
+    tool_change_counts_.resize(settings.tool_names.size());
+    const auto on_tool_change = [this](int tool, bool there) {
+      ToolChangeCounts& orders = tool_change_counts_[static_cast<std::size_t>(tool)];
       ++(there ? orders.added : orders.removed);
       tool_requests_.ask(tool, there);
     };
-    inputs_ = std::make_unique<DdsInputs>(dds_->participant(), settings, record_button, hand_on);
+    inputs_ =
+        std::make_unique<DdsInputs>(dds_->participant(), settings, record_button, on_tool_change);
     inputs_->start();
     dds_->start();
     if (reader_ != nullptr && !dds_->wait_for_readers(1, k_reader_limit)) {
@@ -141,10 +142,10 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
 }
 
 void Sinks::offer_button(const ButtonEvent& event) {
-  const std::lock_guard lock(one_button_);
+  const std::lock_guard lock(button_mutex_);
   RecorderLane* const lane = recorder_ != nullptr ? &recorder_->input_lane() : nullptr;
   if (lane != nullptr) (void)lane->offer_button(event);
-  held_buttons_.take(event, lane);
+  held_buttons_.apply(event, lane);
 }
 
 void Sinks::close(SinkOutcome& result) {
@@ -154,20 +155,20 @@ void Sinks::close(SinkOutcome& result) {
   result.can_bus_load = can_bus_load_;
   can_.reset();
   if (!can_file_.empty()) result.files.push_back(can_file_);
-  result.can_not_heard = can_not_heard_;
+  result.can_receive_error = can_receive_error_;
   if (buttons_ != nullptr) {
     buttons_->stop();
-    result.can_heard = buttons_->counts();
+    result.can_received = buttons_->counts();
     buttons_.reset();
   }
   if (inputs_ != nullptr) {
     inputs_->stop();
-    result.heard = inputs_->counts();
-    result.tool_orders = tool_orders_;
+    result.dds_received = inputs_->counts();
+    result.tool_change_counts = tool_change_counts_;
     inputs_.reset();  // the sink leaves the domain when nothing else holds it
   }
   if (files_ != nullptr) {
-    result.files_wrong = files_->close();
+    result.files_error = files_->close();
     result.files_lost = files_->lost();
     if (by_rate_) result.by_rate = std::make_shared<const OutputByRate>(files_->by_rate());
     losses_.store(LossKind::files, result.files_lost);
@@ -191,7 +192,7 @@ void Sinks::close(SinkOutcome& result) {
         result.dds_reader = reader_->finish(k_reader_limit);
         result.dds_was_read = true;
       } catch (const std::exception& error) {
-        result.dds_not_read = error.what();
+        result.dds_reader_error = error.what();
       }
     }
   }

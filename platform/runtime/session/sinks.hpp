@@ -57,10 +57,12 @@ class Sinks {
   [[nodiscard]] LossCounters& losses() noexcept { return losses_; }
 
   // Written by the background group; published likewise.
-  [[nodiscard]] FollowedRobotNotes& robot_notes() noexcept { return robot_notes_; }
+  [[nodiscard]] RobotTrackingStatus& robot_notes() noexcept { return robot_notes_; }
 
   // Written by the calibration watch; published likewise.
-  [[nodiscard]] CalibrationNotes& calibration_notes() noexcept { return calibration_notes_; }
+  [[nodiscard]] CalibrationFindingsStore& calibration_notes() noexcept {
+    return calibration_notes_;
+  }
 
   // Call after the last offer. Writes all queued data and stores the results in `result`.
   void close(SinkOutcome& result);
@@ -71,11 +73,11 @@ class Sinks {
   bool by_rate_ = false;
   OverrunCounters overruns_;
   LossCounters losses_;
-  FollowedRobotNotes robot_notes_;
-  CalibrationNotes calibration_notes_;
+  RobotTrackingStatus robot_notes_;
+  CalibrationFindingsStore calibration_notes_;
   ToolRequests tool_requests_;
-  std::vector<ToolOrders> tool_orders_;  // by tool; of the thread that reads from DDS
-  std::mutex one_button_;                // serialises the input lane and the held buttons
+  std::vector<ToolChangeCounts> tool_change_counts_;  // by tool; of the thread that reads from DDS
+  std::mutex button_mutex_;  // serialises the input lane and the held buttons
   HeldButtons held_buttons_;
   std::unique_ptr<Recorder> recorder_;  // outlives the threads that offer to it
   std::unique_ptr<FileSink> files_;
@@ -84,7 +86,7 @@ class Sinks {
   std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;
   std::unique_ptr<DdsInputs> inputs_;
-  std::string can_not_heard_;
+  std::string can_receive_error_;
   std::string recording_file_, can_file_, tum_file_, csv_file_;
 };
 

@@ -53,22 +53,22 @@ void TickGroup::tick_as(std::uint64_t number, const ChoiceRecord& recorded) noex
 void TickGroup::run(const Now& now, Time woken, const graph::OverrunDecision* recorded) noexcept {
   output_->input<Now>() = now;
   // State of PackCan before the tick; restored if its frames do not leave.
-  const PackCan remembered = output_->node<PackCan>();
+  const PackCan previous_state = output_->node<PackCan>();
   overrun_ = recorded != nullptr ? runner_->run_as(*output_, *recorded, recorded->after_node)
                                  : runner_->run(*output_, {group_.choice().activation, now.number,
                                                            now.tick, woken, carried_sequence()});
   skipped_ = false;
   if (overrun_.happened()) {
-    output_->node<PackCan>() = remembered;
-    answer(now);
+    output_->node<PackCan>() = previous_state;
+    compute_substitute(now);
   } else {
     samples_ = &output_->output<PoseSamples>();
     frames_ = &output_->output<CanFrames>();
   }
-  if (source_ != nullptr && source_->late(now.tick) && measures_none()) ++ticks_source_late_;
+  if (source_ != nullptr && source_->late(now.tick) && lacks_measurement()) ++ticks_source_late_;
   losses_.count();
   if (!skipped_) send(now, woken);
-  runner_->settle(*output_);
+  runner_->finish_activation(*output_);
   if (!overrun_.happened()) *in_time_ = *samples_;
 
   if (sinks_.lane != nullptr) {
@@ -83,7 +83,7 @@ void TickGroup::stop_safe() noexcept {
   (void)send_one(heartbeat_frame(node_, CanNodeState::stopped), now_());
 }
 
-void TickGroup::answer(const Now& now) noexcept {
+void TickGroup::compute_substitute(const Now& now) noexcept {
   (void)own_notes_.push({k_tick_group, overrun_});
   samples_ = substitute_.get();
   frames_ = substitute_frames_.get();
@@ -124,7 +124,7 @@ std::size_t TickGroup::pose_frames() const noexcept {
   return static_cast<std::size_t>(std::min(samples_->count * of_tool, frames_->count));
 }
 
-bool TickGroup::measures_none() const noexcept {
+bool TickGroup::lacks_measurement() const noexcept {
   if (skipped_) return true;
   for (int t = 0; t < samples_->count; ++t) {
     if (samples_->items[static_cast<std::size_t>(t)].state == TrackState::measured) return false;
@@ -148,7 +148,7 @@ void TickGroup::send_poses(Time woken) noexcept {
   if (pose_frames() == 0) return;
 
   TickOfFrames tick;
-  tick.whole = true;
+  tick.all_accepted = true;
   tick.tools = samples_->count;
   for (int t = 0; t < tick.tools; ++t) {
     tick.states[static_cast<std::size_t>(t)] = samples_->items[static_cast<std::size_t>(t)].state;
@@ -157,7 +157,7 @@ void TickGroup::send_poses(Time woken) noexcept {
   for (const CanFrame& frame : frames_->frames().first(pose_frames())) {
     const Time time = now_();
     const bool accepted = send_one(frame, time);
-    tick.whole = tick.whole && accepted;
+    tick.all_accepted = tick.all_accepted && accepted;
     if (first) tick.at = time;
     if (first && accepted && first_carried) {
       // If this frame is refused, the next tick is the first to carry the estimate.
@@ -170,7 +170,7 @@ void TickGroup::send_poses(Time woken) noexcept {
     first = false;
   }
   tick.last = can_accepted_;
-  if (tick.whole || tick.carries) sent_.add(tick, sinks_.can->counts().sent);
+  if (tick.all_accepted || tick.carries) sent_.add(tick, sinks_.can->counts().sent);
 }
 
 // Sends at most one emergency per tick: first the frame group's overruns, then the tick's, then
@@ -184,7 +184,7 @@ void TickGroup::send_emergency(Time tick) noexcept {
                    now_());
     return;
   }
-  if (const auto kind = losses_.take_due(tick)) {
+  if (const auto kind = losses_.next_due_report(tick)) {
     (void)send_one(loss_frame(node_, *kind), now_());
   }
 }

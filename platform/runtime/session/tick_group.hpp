@@ -70,14 +70,14 @@ class TickGroup {
 
  private:
   void run(const Now& now, Time woken, const graph::OverrunDecision* recorded) noexcept;
-  void answer(const Now& now) noexcept;
+  void compute_substitute(const Now& now) noexcept;
   void send(const Now& now, Time woken) noexcept;
   void send_poses(Time woken) noexcept;
   void send_emergency(Time tick) noexcept;
   [[nodiscard]] std::uint64_t carried_sequence() const noexcept;
   bool send_one(const CanFrame& frame, Time time) noexcept;
   [[nodiscard]] std::size_t pose_frames() const noexcept;
-  [[nodiscard]] bool measures_none() const noexcept;
+  [[nodiscard]] bool lacks_measurement() const noexcept;
   void offer_samples() noexcept;
 
   std::unique_ptr<Output> output_ = std::make_unique<Output>();
@@ -98,7 +98,7 @@ class TickGroup {
   std::unique_ptr<PoseSamples> substitute_ = std::make_unique<PoseSamples>();
   std::unique_ptr<CanFrames> substitute_frames_ = std::make_unique<CanFrames>();
   std::int64_t unix_offset_ns_;
-  LossWatch losses_;
+  LossMonitor losses_;
   SentTicks sent_;
   const FrameSource* source_ = nullptr;
   std::uint64_t ticks_source_late_ = 0;

@@ -29,25 +29,25 @@ class ToolRequests {
   // Thread-safe. The last request for a tool counts.
   void ask(int tool, bool there) noexcept {
     const std::uint32_t bit = 1u << tool;
-    std::uint32_t before = asked_.load(std::memory_order_relaxed), after = 0;
+    std::uint32_t before = requested_.load(std::memory_order_relaxed), after = 0;
     do {
       const std::uint32_t wanted = there ? before | bit : before & ~bit;
-      after = wanted | bit << k_about;
-    } while (!asked_.compare_exchange_weak(before, after, std::memory_order_relaxed));
+      after = wanted | bit << k_mask_shift;
+    } while (!requested_.compare_exchange_weak(before, after, std::memory_order_relaxed));
   }
 
   // Applies the requests since the last call to the present tools.
   [[nodiscard]] ToolsPresent applied_to(ToolsPresent there) noexcept {
-    const std::uint32_t asked = asked_.exchange(0, std::memory_order_relaxed);
-    const auto about = static_cast<ToolsPresent>(asked >> k_about);
-    const auto wanted = static_cast<ToolsPresent>(asked);
+    const std::uint32_t requested = requested_.exchange(0, std::memory_order_relaxed);
+    const auto about = static_cast<ToolsPresent>(requested >> k_mask_shift);
+    const auto wanted = static_cast<ToolsPresent>(requested);
     return static_cast<ToolsPresent>((there & ~about) | (wanted & about));
   }
 
  private:
-  static constexpr int k_about = k_tools_max;
+  static constexpr int k_mask_shift = k_tools_max;
   static_assert(2 * k_tools_max <= 32);
-  std::atomic<std::uint32_t> asked_{0};  // low bits: wanted; high bits: tools concerned
+  std::atomic<std::uint32_t> requested_{0};  // low bits: wanted; high bits: tools concerned
 };
 
 class ToolRoster {
@@ -66,10 +66,10 @@ class ToolRoster {
   // Applies the cell's changes up to `now` and the requests; publishes the set if it differs. Call
   // from one thread, not real-time; the delay of a change is the time until the next call. A change
   // of the cell affects only the tools that it names.
-  void reach(Time now) {
+  void apply_changes(Time now) {
     ToolsPresent there = there_;
     for (; next_ < cell_->tool_changes.size() && cell_->tool_changes[next_].at <= now; ++next_) {
-      const ToolsPresent planned = cell_->tool_changes[next_].now_there;
+      const ToolsPresent planned = cell_->tool_changes[next_].present;
       const auto named = static_cast<ToolsPresent>(planned ^ planned_);
       there = static_cast<ToolsPresent>((there & ~named) | (planned & named));
       planned_ = planned;

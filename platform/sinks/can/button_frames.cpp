@@ -26,12 +26,12 @@ std::optional<CanFrame> frame_of_socketcan(std::span<const std::uint8_t> bytes) 
 ButtonFrames::ButtonFrames(std::uint32_t identifier, OnButton on_button, Duration timeout)
     : identifier_(identifier), on_button_(std::move(on_button)), timeout_(timeout) {}
 
-void ButtonFrames::hear(const std::optional<CanFrame>& frame, Time arrived) {
+void ButtonFrames::receive(const std::optional<CanFrame>& frame, Time arrived) {
   if (!frame || frame->extended || frame->identifier != identifier_ || frame->length == 0) {
     refused_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
-  heard_.fetch_add(1, std::memory_order_relaxed);
+  received_.fetch_add(1, std::memory_order_relaxed);
   last_ = arrived;
   for (std::size_t i = 0; i < held_.size(); ++i) {
     const bool now = (frame->data[0] >> i & 1U) != 0;
@@ -41,7 +41,7 @@ void ButtonFrames::hear(const std::optional<CanFrame>& frame, Time arrived) {
   }
 }
 
-void ButtonFrames::release_if_silent(Time now) {
+void ButtonFrames::release_on_timeout(Time now) {
   if (now - last_ <= timeout_) return;
   for (std::size_t i = 0; i < held_.size(); ++i) {
     if (!held_[i]) continue;
@@ -52,7 +52,7 @@ void ButtonFrames::release_if_silent(Time now) {
 }
 
 ButtonFrameCounts ButtonFrames::counts() const noexcept {
-  return {heard_.load(std::memory_order_relaxed), refused_.load(std::memory_order_relaxed),
+  return {received_.load(std::memory_order_relaxed), refused_.load(std::memory_order_relaxed),
           released_.load(std::memory_order_relaxed)};
 }
 

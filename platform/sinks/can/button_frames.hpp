@@ -25,10 +25,10 @@ namespace glint {
 [[nodiscard]] std::optional<CanFrame> frame_of_socketcan(std::span<const std::uint8_t> bytes);
 
 struct ButtonFrameCounts {
-  std::uint64_t heard = 0;     // valid button frames
+  std::uint64_t received = 0;  // valid button frames
   std::uint64_t refused = 0;   // all other frames
   std::uint64_t released = 0;  // buttons released because their sender timed out
-  [[nodiscard]] bool any() const { return heard + refused > 0; }
+  [[nodiscard]] bool any() const { return received + refused > 0; }
 };
 
 class ButtonFrames {
@@ -40,11 +40,11 @@ class ButtonFrames {
 
   // From one thread: calls `on_button` for each button whose state differs from the last frame's. A
   // frame that is invalid, or not a button frame, is counted as refused.
-  void hear(const std::optional<CanFrame>& frame, Time arrived);
+  void receive(const std::optional<CanFrame>& frame, Time arrived);
 
   // From the same thread: if the last button frame is older than the timeout, releases the held
   // buttons, with one event at `now` for each.
-  void release_if_silent(Time now);
+  void release_on_timeout(Time now);
 
   // From any thread.
   [[nodiscard]] ButtonFrameCounts counts() const noexcept;
@@ -55,7 +55,7 @@ class ButtonFrames {
   Duration timeout_;
   Time last_;
   std::array<bool, k_button_count> held_{};
-  std::atomic<std::uint64_t> heard_{0}, refused_{0}, released_{0};
+  std::atomic<std::uint64_t> received_{0}, refused_{0}, released_{0};
 };
 
 }  // namespace glint

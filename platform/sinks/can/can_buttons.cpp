@@ -18,8 +18,8 @@
 namespace glint {
 namespace {
 
-constexpr Duration k_look_again = milliseconds(20);
-constexpr int k_takes_max = 256;                       // per wake-up
+constexpr Duration k_poll_period = milliseconds(20);
+constexpr int k_frames_per_wakeup_max = 256;           // per wake-up
 constexpr Duration k_wait_max = milliseconds(10'000);  // of a frame in the socket's queue
 constexpr std::string_view k_socketcan = "socketcan:";
 
@@ -47,15 +47,15 @@ Time unix_stamp(msghdr& message, Time otherwise) {
 
 }  // namespace
 
-Time board_arrival(Time unix_stamp, Time unix_now, Time board_now) noexcept {
+Time monotonic_arrival(Time unix_stamp, Time unix_now, Time local_now) noexcept {
   const Duration age = unix_now - unix_stamp;
-  return age < Duration{} || age > k_wait_max ? board_now : board_now - age;
+  return age < Duration{} || age > k_wait_max ? local_now : local_now - age;
 }
 
-CanButtons::CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,
+CanButtons::CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_local,
                        ButtonFrames::OnButton on_button, Duration timeout)
     : socket_(std::move(socket)),
-      board_minus_monotonic_(unix_offset() - unix_minus_board),
+      local_minus_monotonic_(unix_offset() - unix_minus_local),
       frames_(identifier, std::move(on_button), timeout) {
   const int on = 1;
   ::setsockopt(socket_.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
@@ -67,7 +67,7 @@ void CanButtons::start() {
   if (thread_.joinable()) return;
   stopping_ = false;
   thread_ = std::thread([this] {
-    while (!stopping_) read(k_look_again);
+    while (!stopping_) read(k_poll_period);
   });
   pthread_setname_np(thread_.native_handle(), "glint_buttons");
 }
@@ -81,15 +81,15 @@ int CanButtons::read(Duration limit) {
   pollfd waiting{socket_.get(), POLLIN, 0};
   const bool ready = ::poll(&waiting, 1, static_cast<int>(limit.nanoseconds / 1'000'000)) > 0;
   int taken = 0;
-  while (ready && taken < k_takes_max && take()) ++taken;
-  frames_.release_if_silent(board_now());
+  while (ready && taken < k_frames_per_wakeup_max && read_one()) ++taken;
+  frames_.release_on_timeout(local_now());
   if (!ready) return 0;
   // The socket of a removed interface is always readable, without data.
   if (taken == 0) std::this_thread::sleep_for(std::chrono::nanoseconds(limit.nanoseconds));
   return taken;
 }
 
-bool CanButtons::take() {
+bool CanButtons::read_one() {
   std::array<std::uint8_t, CANFD_MTU + 1> bytes{};  // one byte more, to detect longer frames
   alignas(cmsghdr) std::array<std::uint8_t, 256> control{};
   iovec part{bytes.data(), bytes.size()};
@@ -101,20 +101,20 @@ bool CanButtons::take() {
   const ssize_t size = ::recvmsg(socket_.get(), &message, MSG_DONTWAIT);
   if (size < 0) return false;
   const Time unix_now = unix_time();
-  frames_.hear(frame_of_socketcan({bytes.data(), static_cast<std::size_t>(size)}),
-               board_arrival(unix_stamp(message, unix_now), unix_now, board_now()));
+  frames_.receive(frame_of_socketcan({bytes.data(), static_cast<std::size_t>(size)}),
+                  monotonic_arrival(unix_stamp(message, unix_now), unix_now, local_now()));
   return true;
 }
 
-Time CanButtons::board_now() const { return monotonic_now() + board_minus_monotonic_; }
+Time CanButtons::local_now() const { return monotonic_now() + local_minus_monotonic_; }
 
 std::unique_ptr<CanButtons> open_can_buttons(const std::string& specification,
-                                             std::uint32_t identifier, Duration unix_minus_board,
+                                             std::uint32_t identifier, Duration unix_minus_local,
                                              ButtonFrames::OnButton on_button, Duration timeout) {
   if (!specification.starts_with(k_socketcan)) return nullptr;
   auto buttons = std::make_unique<CanButtons>(
       open_socketcan(specification.substr(k_socketcan.size()), CanFormat::classic, identifier),
-      identifier, unix_minus_board, std::move(on_button), timeout);
+      identifier, unix_minus_local, std::move(on_button), timeout);
   buttons->start();
   return buttons;
 }

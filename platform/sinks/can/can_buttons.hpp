@@ -13,10 +13,10 @@
 
 namespace glint {
 
-// Arrival time of a message on the companion computer's clock: `board_now` minus the age of the
+// Arrival time of a message on the companion computer's clock: `local_now` minus the age of the
 // kernel's time stamp at `unix_now`, both read together. If the age is not between 0 and 10 s, the
-// Unix clock was set in between, and the result is `board_now`.
-[[nodiscard]] Time board_arrival(Time unix_stamp, Time unix_now, Time board_now) noexcept;
+// Unix clock was set in between, and the result is `local_now`.
+[[nodiscard]] Time monotonic_arrival(Time unix_stamp, Time unix_now, Time local_now) noexcept;
 
 class CanButtons {
  public:
@@ -25,7 +25,7 @@ class CanButtons {
   // The Unix clock is read only here: a later step of it shifts no event. `on_button` is called
   // from the reading thread, also for the release of a button whose sender was silent for
   // `timeout`.
-  CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,
+  CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_local,
              ButtonFrames::OnButton on_button, Duration timeout = k_button_timeout);
   ~CanButtons();  // stop()
   CanButtons(const CanButtons&) = delete;
@@ -41,11 +41,11 @@ class CanButtons {
   [[nodiscard]] ButtonFrameCounts counts() const noexcept { return frames_.counts(); }
 
  private:
-  bool take();
-  [[nodiscard]] Time board_now() const;
+  bool read_one();
+  [[nodiscard]] Time local_now() const;
 
   Descriptor socket_;
-  Duration board_minus_monotonic_;
+  Duration local_minus_monotonic_;
   ButtonFrames frames_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
@@ -54,7 +54,7 @@ class CanButtons {
 // Opens and starts "socketcan:IF"; null for a log, which is write-only. Throws as open_can_sink.
 [[nodiscard]] std::unique_ptr<CanButtons> open_can_buttons(const std::string& specification,
                                                            std::uint32_t identifier,
-                                                           Duration unix_minus_board,
+                                                           Duration unix_minus_local,
                                                            ButtonFrames::OnButton on_button,
                                                            Duration timeout = k_button_timeout);
 

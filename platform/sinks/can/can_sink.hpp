@@ -45,7 +45,7 @@ struct CanSinkOptions {
   std::int64_t unix_offset_ns = 0;        // Unix time - monotonic time, for the log
   std::string log_interface = "can0";     // interface name in the log
   CanFormat format = CanFormat::classic;  // fd: the interface must carry 64-byte frames
-  WhenFull when_full = WhenFull::drop;
+  OverflowPolicy when_full = OverflowPolicy::drop;
 };
 
 // "socketcan:IF" or "log:FILE" (candump -L format). Throws InputError for another specification or

@@ -96,9 +96,9 @@ std::optional<CandumpRecord> parse_candump(std::string_view line) {
   CandumpRecord record;
   record.unix_ns = seconds * k_second_ns + microseconds * k_microsecond_ns;
   record.interface = std::string(line.substr(0, space));
-  const auto shown = [](char c) { return c > ' ' && c <= '~'; };
+  const auto is_visible_ascii = [](char c) { return c > ' ' && c <= '~'; };
   if (space == 0 || space > k_interface_name_max ||
-      !std::all_of(record.interface.begin(), record.interface.end(), shown)) {
+      !std::all_of(record.interface.begin(), record.interface.end(), is_visible_ascii)) {
     return {};
   }
   if (!read_frame(line.substr(space + 1), record.frame)) return {};

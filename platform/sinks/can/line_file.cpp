@@ -14,7 +14,7 @@
 namespace glint {
 
 LineFile::LineFile(std::filesystem::path file) : file_(std::move(file)), written_as_(file_) {
-  if (is_written_in_place(file_.string())) {
+  if (is_special_file(file_.string())) {
     descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
     const PartFile part = open_part_file(file_.string());
@@ -36,28 +36,28 @@ void LineFile::add(std::string_view line) noexcept {
   if (failed_)
     ++lines_lost_;
   else
-    gathered_.append(line);
+    buffered_.append(line);
 }
 
 void LineFile::write_out() noexcept {
-  std::string_view rest = gathered_;
+  std::string_view rest = buffered_;
   while (!failed_ && !rest.empty()) {
     const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0)
-      give_up(rest);
+      truncate_to_complete_lines(rest);
     else
       rest.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (!failed_) bytes_ += static_cast<std::int64_t>(gathered_.size());
-  gathered_.clear();
+  if (!failed_) bytes_ += static_cast<std::int64_t>(buffered_.size());
+  buffered_.clear();
 }
 
 // Part of the buffered lines may be on the disk: keep the complete ones.
-void LineFile::give_up(std::string_view unwritten) noexcept {
+void LineFile::truncate_to_complete_lines(std::string_view unwritten) noexcept {
   failed_ = true;
   error_ = errno;
-  const std::string_view all = gathered_;
+  const std::string_view all = buffered_;
   const std::string_view written = all.substr(0, all.size() - unwritten.size());
   const auto last_end = written.rfind('\n');
   const std::size_t kept = last_end == std::string_view::npos ? 0 : last_end + 1;

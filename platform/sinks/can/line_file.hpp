@@ -29,7 +29,7 @@ class LineFile {
   [[nodiscard]] int error() const noexcept { return error_; }
 
  private:
-  void give_up(std::string_view unwritten) noexcept;
+  void truncate_to_complete_lines(std::string_view unwritten) noexcept;
 
   std::filesystem::path file_;
   std::filesystem::path written_as_;
@@ -38,7 +38,7 @@ class LineFile {
   int error_ = 0;
   std::int64_t bytes_ = 0;  // on disk, complete lines only
   std::uint64_t lines_lost_ = 0;
-  std::string gathered_;
+  std::string buffered_;
 };
 
 }  // namespace glint

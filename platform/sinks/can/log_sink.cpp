@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 // Sleep time of the writer when idle. A wake-up from `send` would cost the sender a system call.
-constexpr std::chrono::milliseconds k_nap{2};
+constexpr std::chrono::milliseconds k_idle_sleep{2};
 // Lines are flushed, and then counted as written or lost, after this number of frames.
 constexpr std::uint64_t k_batch = 256;
 static_assert(FrameRing::k_capacity + k_batch <= k_can_in_flight_max);
@@ -29,18 +29,18 @@ class LogSink : public CanSink {
 
   bool send(const CanFrame& frame, Time time) noexcept override {
     while (!ring_.push({frame, time})) {
-      if (options_.when_full == WhenFull::drop) {
+      if (options_.when_full == OverflowPolicy::drop) {
         dropped_.fetch_add(1, std::memory_order_relaxed);
         return false;
       }
-      std::this_thread::sleep_for(k_nap);
+      std::this_thread::sleep_for(k_idle_sleep);
     }
     return true;
   }
 
   void flush() noexcept override {
     const std::uint64_t target = ring_.pushed();
-    while (sent_.load() + failed_.load() < target) std::this_thread::sleep_for(k_nap);
+    while (sent_.load() + failed_.load() < target) std::this_thread::sleep_for(k_idle_sleep);
   }
 
   [[nodiscard]] CanSinkCounts counts() const noexcept override {
@@ -53,7 +53,7 @@ class LogSink : public CanSink {
     while (!stopping) {
       stopping = stop_.load();  // before the last drain: nothing is sent after it is set
       drain();
-      if (!stopping) std::this_thread::sleep_for(k_nap);
+      if (!stopping) std::this_thread::sleep_for(k_idle_sleep);
     }
   }
 
@@ -64,12 +64,12 @@ class LogSink : public CanSink {
           format_candump(item->frame, item->time.nanoseconds + options_.unix_offset_ns,
                          options_.log_interface, buffer);
       file_.add(line);
-      if (++taken_ % k_batch == 0) settle();
+      if (++taken_ % k_batch == 0) update_counts();
     }
-    settle();
+    update_counts();
   }
 
-  void settle() noexcept {
+  void update_counts() noexcept {
     file_.write_out();
     error_.store(file_.error());
     failed_.store(file_.lines_lost());

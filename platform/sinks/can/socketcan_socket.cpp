@@ -34,7 +34,7 @@ void require(int socket, const std::string& interface, CanFormat format) {
 }  // namespace
 
 Descriptor open_socketcan(const std::string& interface, CanFormat format,
-                          std::optional<std::uint32_t> heard) {
+                          std::optional<std::uint32_t> identifier_filter) {
   if (interface.size() >= IFNAMSIZ)
     throw InputError("socketcan:" + interface + ": a name of " + std::to_string(interface.size()) +
                      " characters; expected at most " + std::to_string(IFNAMSIZ - 1));
@@ -46,9 +46,9 @@ Descriptor open_socketcan(const std::string& interface, CanFormat format,
                            "; expected a kernel with CAN (modprobe can_raw)");
   require(socket.get(), interface, format);
   // Before bind(), so that no other frame is ever queued.
-  const can_filter filter{heard.value_or(0), CAN_SFF_MASK | CAN_EFF_FLAG};
-  ::setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FILTER, heard ? &filter : nullptr,
-               heard ? sizeof filter : 0);
+  const can_filter filter{identifier_filter.value_or(0), CAN_SFF_MASK | CAN_EFF_FLAG};
+  ::setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FILTER, identifier_filter ? &filter : nullptr,
+               identifier_filter ? sizeof filter : 0);
   const int on = 1;
   ::setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
   sockaddr_can address{};

@@ -24,7 +24,7 @@
 
 namespace glint {
 
-struct HeardCounts {
+struct ReceivedCounts {
   // Received messages.
   std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0, tools = 0;
   std::uint64_t refused = 0;
@@ -53,14 +53,16 @@ class DdsInputs {
   void read(Duration limit);
 
   // Each buffer allows one reader.
-  [[nodiscard]] graph::TripleBuffer<HeardJoints>& joints() noexcept { return *joints_; }
-  [[nodiscard]] graph::TripleBuffer<HeardGuess>& guess() noexcept { return *guess_; }
-  [[nodiscard]] graph::TripleBuffer<HeardDescription>& description() noexcept {
+  [[nodiscard]] graph::TripleBuffer<ReceivedJoints>& joints() noexcept { return *joints_; }
+  [[nodiscard]] graph::TripleBuffer<ReceivedInitialPose>& initial_pose() noexcept {
+    return *initial_pose_;
+  }
+  [[nodiscard]] graph::TripleBuffer<ReceivedDescription>& description() noexcept {
     return *description_;
   }
 
   // Thread-safe.
-  [[nodiscard]] HeardCounts counts() const noexcept;
+  [[nodiscard]] ReceivedCounts counts() const noexcept;
 
  private:
   struct ButtonReader {
@@ -73,15 +75,15 @@ class DdsInputs {
   dds_entity_t add_reader(const TopicType& type, const std::string& topic, const Quality& quality);
   void take_joints();
   void take_descriptions();
-  void take_guesses();
+  void take_initial_poses();
   void take_button(Button button);
   void release_if_gone(Button button);
   void take_tools(dds_entity_t reader, bool there);
   [[nodiscard]] Time now() const;
 
   std::shared_ptr<Participant> participant_;
-  Duration unix_minus_board_;
-  Duration board_minus_steady_;  // constant: steps of the Unix clock do not change arrival times
+  Duration unix_minus_session_;
+  Duration session_minus_steady_;  // constant: steps of the Unix clock do not change arrival times
   OnButton on_button_;
   OnTool on_tool_;
   Duration button_timeout_;
@@ -89,9 +91,9 @@ class DdsInputs {
   dds_entity_t waitset_ = 0, joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
   dds_entity_t add_reader_ = 0, remove_reader_ = 0;
   std::array<ButtonReader, k_button_count> buttons_;
-  std::unique_ptr<graph::TripleBuffer<HeardJoints>> joints_;
-  std::unique_ptr<graph::TripleBuffer<HeardGuess>> guess_;
-  std::unique_ptr<graph::TripleBuffer<HeardDescription>> description_;
+  std::unique_ptr<graph::TripleBuffer<ReceivedJoints>> joints_;
+  std::unique_ptr<graph::TripleBuffer<ReceivedInitialPose>> initial_pose_;
+  std::unique_ptr<graph::TripleBuffer<ReceivedDescription>> description_;
   using Counter = std::atomic<std::uint64_t>;
   Counter joints_count_{0}, description_count_{0}, guess_count_{0}, button_count_{0},
       tool_count_{0}, refused_{0}, released_{0};

@@ -38,20 +38,20 @@ struct DdsSettings {
   Duration tick_period = milliseconds(4);
   Duration actuation_delay;  // from a tick to the time for which its pose is valid
   // Accepts messages that add or remove the tools named above.
-  bool hears_tool_changes = false;
+  bool accepts_tool_changes = false;
   Duration button_timeout = k_button_timeout;  // of a held button without repeated messages
-  Duration unix_minus_board;                   // offset from a PoseSample's times to Unix time
+  Duration unix_minus_session;                 // offset from a PoseSample's times to Unix time
   Duration poll_period = microseconds(500);    // of the sink's thread, for its ring
   // Further contents of /diagnostics: this machine's timing faults (empty: none) and the overruns
   // so far (null: not counted; must outlive the sink).
-  std::string best_effort;
+  std::string timing_faults;
   const OverrunCounters* overruns = nullptr;
   // Output losses so far (null: not counted; must outlive the sink).
   const LossCounters* losses = nullptr;
   // State of the followed robot (null: none; must outlive the sink).
-  const FollowedRobotNotes* robot = nullptr;
+  const RobotTrackingStatus* robot = nullptr;
   // Estimated calibration errors (null: not monitored; must outlive the sink).
-  const CalibrationNotes* calibration = nullptr;
+  const CalibrationFindingsStore* calibration = nullptr;
 };
 
 }  // namespace glint

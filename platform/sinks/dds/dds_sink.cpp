@@ -58,7 +58,7 @@ void DdsSink::stop() {
   accepting_.store(false);
   stopping_.store(true);
   if (thread_.joinable()) thread_.join();
-  write_waiting();
+  write_queued();
   write_diagnostics();  // including the losses of the last second
   publisher_->end_streams(k_receipts_limit);
   publisher_.reset();
@@ -72,14 +72,15 @@ DdsCounts DdsSink::counts() const noexcept {
   counts.ring_dropped =
       ring_.dropped() + refused_.load(std::memory_order_relaxed) + counts.write_failed;
   counts.poses_written = poses_written_.load(std::memory_order_relaxed);
-  counts.others_lost = frames_.dropped() + others_failed_.load(std::memory_order_relaxed);
+  counts.poses_and_transforms_lost =
+      frames_.dropped() + others_failed_.load(std::memory_order_relaxed);
   return counts;
 }
 
 void DdsSink::run() {
   Clock::time_point diagnostics_due = Clock::now();
   while (!stopping_.load(std::memory_order_acquire)) {
-    write_waiting();
+    write_queued();
     if (Clock::now() >= diagnostics_due) {
       write_diagnostics();
       diagnostics_due += k_diagnostics_period;
@@ -97,7 +98,7 @@ std::shared_ptr<Participant> DdsSink::participant() const {
   return publisher_ != nullptr ? publisher_->participant() : nullptr;
 }
 
-void DdsSink::write_waiting() {
+void DdsSink::write_queued() {
   FrameTransforms frame;
   while (frames_.pop(frame)) publisher_->write_frame(frame);
   if (robot_.sample()) publisher_->write_robot(robot_.value());

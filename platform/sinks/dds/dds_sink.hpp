@@ -30,8 +30,9 @@ struct DdsCounts {
   std::uint64_t ring_dropped = 0;   // not written: ring full, unknown tool, stopped, write failed
   std::uint64_t write_failed = 0;   // part of ring_dropped: rejected by DDS or out of tick order
   std::uint64_t poses_written = 0;  // written samples with a pose
-  std::uint64_t others_lost = 0;    // poses and transforms: ring full, or rejected by DDS
-  [[nodiscard]] std::uint64_t lost() const { return ring_dropped + others_lost; }
+  std::uint64_t poses_and_transforms_lost =
+      0;  // poses and transforms: ring full, or rejected by DDS
+  [[nodiscard]] std::uint64_t lost() const { return ring_dropped + poses_and_transforms_lost; }
 };
 
 class DdsSink final : public PoseOutput {
@@ -77,7 +78,7 @@ class DdsSink final : public PoseOutput {
 
  private:
   void run();
-  void write_waiting();
+  void write_queued();
   void write_diagnostics();
 
   using Counter = std::atomic<std::uint64_t>;

@@ -34,7 +34,7 @@ StateText text_of(TrackState state) {
 
 char* Diagnostics::keep(std::string_view text) { return texts_.emplace_back(text).data(); }
 
-void Diagnostics::add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures) {
+void Diagnostics::add(std::string_view tool, const PoseSample& sample, const SinkCounts& counts) {
   const StateText state = text_of(sample.state);
   std::vector<Value>& values = values_.emplace_back();
   const auto value = [&](std::string_view key, const std::string& text) {
@@ -48,16 +48,16 @@ void Diagnostics::add(std::string_view tool, const PoseSample& sample, const Sin
   }
   value("tick", std::to_string(sample.tick_number));
   value("frame", std::to_string(sample.frame_sequence));
-  value("offered", std::to_string(figures.offered));
-  value("written", std::to_string(figures.written));
-  value("ring_dropped", std::to_string(figures.ring_dropped));
+  value("offered", std::to_string(counts.offered));
+  value("written", std::to_string(counts.written));
+  value("ring_dropped", std::to_string(counts.ring_dropped));
 
   add_entry(state.level, keep("glint: " + std::string(tool)),
             sample.reason == Reason::none ? keep(state.text) : keep(name_of(sample.reason)),
             values);
 }
 
-void Diagnostics::add_timing(const OverrunCounters& overruns, std::string_view best_effort) {
+void Diagnostics::add_timing(const OverrunCounters& overruns, std::string_view timing_faults) {
   const std::uint64_t frame = overruns.frame.load(std::memory_order_relaxed);
   const std::uint64_t tick = overruns.tick.load(std::memory_order_relaxed);
   const std::uint64_t source = overruns.source.load(std::memory_order_relaxed);
@@ -65,13 +65,13 @@ void Diagnostics::add_timing(const OverrunCounters& overruns, std::string_view b
   values.push_back({keep("overruns_frame"), keep(std::to_string(frame))});
   values.push_back({keep("overruns_tick"), keep(std::to_string(tick))});
   values.push_back({keep("ticks_source_late"), keep(std::to_string(source))});
-  values.push_back({keep("best_effort"), keep(best_effort)});
+  values.push_back({keep("best_effort"), keep(timing_faults)});
   const bool late = frame + tick + source > 0;
-  const char* const message = frame + tick > 0      ? "overruns"
-                              : source > 0          ? "source too slow"
-                              : best_effort.empty() ? "in time"
-                                                    : "best effort";
-  add_entry(late || !best_effort.empty() ? k_warn : k_ok, keep("glint: timing"), keep(message),
+  const char* const message = frame + tick > 0        ? "overruns"
+                              : source > 0            ? "source too slow"
+                              : timing_faults.empty() ? "in time"
+                                                      : "best effort";
+  add_entry(late || !timing_faults.empty() ? k_warn : k_ok, keep("glint: timing"), keep(message),
             values);
 }
 
@@ -89,18 +89,19 @@ void Diagnostics::add_losses(const LossCounters& losses) {
   add_entry(lost ? k_error : k_ok, keep("glint: losses"), keep(lost ? text : "none"), values);
 }
 
-void Diagnostics::add_robot(const FollowedRobotNotes& robot) {
+void Diagnostics::add_robot(const RobotTrackingStatus& robot) {
   const std::int64_t followed = robot.followed.load(std::memory_order_relaxed);
   const std::int64_t jumps = robot.jumps.load(std::memory_order_relaxed);
-  const std::int64_t unsure = robot.unsure.load(std::memory_order_relaxed);
-  const std::int64_t without_joints = robot.without_joints.load(std::memory_order_relaxed);
-  const double shift_mm = 1e3 * robot.shift_m.load(std::memory_order_relaxed);
-  const double turn_deg = k_degrees_per_radian * robot.turn_rad.load(std::memory_order_relaxed);
+  const std::int64_t inconclusive = robot.inconclusive.load(std::memory_order_relaxed);
+  const std::int64_t skipped_without_joints =
+      robot.skipped_without_joints.load(std::memory_order_relaxed);
+  const double shift_mm = 1e3 * robot.translation_m.load(std::memory_order_relaxed);
+  const double turn_deg = k_degrees_per_radian * robot.rotation_rad.load(std::memory_order_relaxed);
   std::vector<Value>& values = values_.emplace_back();
   values.push_back({keep("followed"), keep(std::to_string(followed))});
   values.push_back({keep("jumps_refused"), keep(std::to_string(jumps))});
-  values.push_back({keep("unsure"), keep(std::to_string(unsure))});
-  values.push_back({keep("without_joints"), keep(std::to_string(without_joints))});
+  values.push_back({keep("unsure"), keep(std::to_string(inconclusive))});
+  values.push_back({keep("without_joints"), keep(std::to_string(skipped_without_joints))});
   values.push_back({keep("jump_mm"), keep(std::to_string(shift_mm))});
   values.push_back({keep("jump_deg"), keep(std::to_string(turn_deg))});
   std::string warning;
@@ -142,7 +143,7 @@ void Diagnostics::add_calibration(const std::vector<CalibrationFinding>& finding
     const std::string text = text_of(finding);
     const std::string key = finding.tool.empty() ? "" : finding.tool + ": ";
     values.push_back({keep(key + std::string(name_of(finding.source))), keep(text)});
-    if (finding.named) warning += (warning.empty() ? "" : "; ") + text;
+    if (finding.exceeds_stated) warning += (warning.empty() ? "" : "; ") + text;
   }
   const char* const fine = findings.empty() ? "too little seen" : "as stated";
   add_entry(warning.empty() ? k_ok : k_warn, keep("glint: calibration"),

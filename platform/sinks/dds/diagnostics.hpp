@@ -15,18 +15,18 @@
 
 namespace glint {
 
-struct SinkFigures;
+struct SinkCounts;
 
 // Owns the text of one message; message() refers to it.
 class Diagnostics {
  public:
-  void add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures);
+  void add(std::string_view tool, const PoseSample& sample, const SinkCounts& counts);
   // Deadline overruns and this machine's timing faults.
-  void add_timing(const OverrunCounters& overruns, std::string_view best_effort);
+  void add_timing(const OverrunCounters& overruns, std::string_view timing_faults);
   // Output losses so far; an error from the first loss on.
   void add_losses(const LossCounters& losses);
   // Whether the robot was detected at its assumed pose.
-  void add_robot(const FollowedRobotNotes& robot);
+  void add_robot(const RobotTrackingStatus& robot);
   // Calibration errors that are larger than stated.
   void add_calibration(const std::vector<CalibrationFinding>& findings);
   [[nodiscard]] DiagnosticsMessage message(Time unix_time);

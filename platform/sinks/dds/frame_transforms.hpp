@@ -9,7 +9,7 @@ namespace glint {
 
 struct FrameTransforms {
   HeadPose head;
-  bool robot_known = false;  // false also for a robot fixed in the world: tf_static has it
+  bool robot_valid = false;  // false also for a robot fixed in the world: tf_static has it
   Pose T_world_robot;
 };
 

@@ -8,39 +8,39 @@ namespace {
 
 constexpr double k_unit_tolerance = 0.01;  // of a quaternion's norm, for rounded inputs
 
-bool hear_name(const char* text, std::size_t least, HeardName& to) {
+bool read_name(const char* text, std::size_t length_min, BoundedName& to) {
   if (text == nullptr) return false;
   const std::size_t length = ::strnlen(text, to.size());
-  if (length < least || length > k_heard_name_max) return false;
+  if (length < length_min || length > k_received_name_max) return false;
   to = {};
   std::memcpy(to.data(), text, length);
   return true;
 }
 
-Time heard_at(const StampMessage& stamp, Duration unix_minus_board, Time arrival) {
+Time time_of_message(const TimeMessage& stamp, Duration unix_minus_session, Time arrival) {
   const bool stamped = stamp.sec != 0 || stamp.nanosec != 0;
-  return stamped ? time_of(stamp) - unix_minus_board : arrival;
+  return stamped ? time_of(stamp) - unix_minus_session : arrival;
 }
 
 }  // namespace
 
-bool hear(const JointStateMessage& message, Duration unix_minus_board, Time arrival,
-          HeardJoints& to) {
+bool read_message(const JointStateMessage& message, Duration unix_minus_session, Time arrival,
+                  ReceivedJoints& to) {
   const std::uint32_t count = message.name._length;
-  if (count < 1 || count > static_cast<std::uint32_t>(k_heard_joints_max)) return false;
+  if (count < 1 || count > static_cast<std::uint32_t>(k_received_joints_max)) return false;
   if (message.position._length != count) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
     to.positions[i] = message.position._buffer[i];
     if (!std::isfinite(to.positions[i])) return false;
-    if (!hear_name(message.name._buffer[i], 1, to.names[i])) return false;
+    if (!read_name(message.name._buffer[i], 1, to.names[i])) return false;
   }
   to.count = static_cast<int>(count);
-  to.time = heard_at(message.header.stamp, unix_minus_board, arrival);
+  to.time = time_of_message(message.header.stamp, unix_minus_session, arrival);
   return true;
 }
 
-bool hear(const PoseCovarianceMessage& message, Duration unix_minus_board, Time arrival,
-          HeardGuess& to) {
+bool read_message(const PoseCovarianceMessage& message, Duration unix_minus_session, Time arrival,
+                  ReceivedInitialPose& to) {
   const auto& p = message.pose.pose.position;
   const auto& q = message.pose.pose.orientation;
   to.pose.translation = Vector3(p.x, p.y, p.z);
@@ -53,20 +53,20 @@ bool hear(const PoseCovarianceMessage& message, Duration unix_minus_board, Time 
     if (!std::isfinite(number)) return false;
     to.covariance(i / 6, i % 6) = number;
   }
-  if (!hear_name(message.header.frame_id, 0, to.frame)) return false;
-  to.time = heard_at(message.header.stamp, unix_minus_board, arrival);
+  if (!read_name(message.header.frame_id, 0, to.frame)) return false;
+  to.time = time_of_message(message.header.stamp, unix_minus_session, arrival);
   return true;
 }
 
-bool hear(const TextMessage& message, HeardDescription& to) {
+bool read_message(const TextMessage& message, ReceivedDescription& to) {
   if (message.data == nullptr) return false;
-  const std::size_t length = ::strnlen(message.data, k_heard_description_max + 1);
-  if (length < 1 || length > k_heard_description_max) return false;
+  const std::size_t length = ::strnlen(message.data, k_received_description_max + 1);
+  if (length < 1 || length > k_received_description_max) return false;
   to.urdf.assign(message.data, length);
   return true;
 }
 
-std::size_t positions_of(const HeardJoints& joints, std::span<const std::string> names,
+std::size_t positions_of(const ReceivedJoints& joints, std::span<const std::string> names,
                          std::span<double> positions) noexcept {
   for (std::size_t n = 0; n < names.size(); ++n) {
     int times = 0;

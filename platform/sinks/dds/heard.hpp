@@ -16,42 +16,42 @@
 
 namespace glint {
 
-inline constexpr int k_heard_joints_max = 64;
-inline constexpr std::size_t k_heard_name_max = 63;  // characters of a joint's or a frame's name
-inline constexpr std::size_t k_heard_description_max = std::size_t{4} << 20;
+inline constexpr int k_received_joints_max = 64;
+inline constexpr std::size_t k_received_name_max = 63;  // characters of a joint's or a frame's name
+inline constexpr std::size_t k_received_description_max = std::size_t{4} << 20;
 
-using HeardName = std::array<char, k_heard_name_max + 1>;  // zero-terminated
+using BoundedName = std::array<char, k_received_name_max + 1>;  // zero-terminated
 
-struct HeardJoints {
+struct ReceivedJoints {
   Time time;  // session time: the message's time stamp, or its arrival if it has none
   int count = 0;
-  std::array<HeardName, k_heard_joints_max> names{};
-  std::array<double, k_heard_joints_max> positions{};  // rad or m, by joint type
+  std::array<BoundedName, k_received_joints_max> names{};
+  std::array<double, k_received_joints_max> positions{};  // rad or m, by joint type
 };
 
 // Initial guess of the robot's pose, from RViz.
-struct HeardGuess {
+struct ReceivedInitialPose {
   Time time;
-  HeardName frame{};
+  BoundedName frame{};
   Pose pose;                             // T_frame_robot
   Matrix6 covariance = Matrix6::Zero();  // x, y, z, rotation about fixed axes x, y, z
 };
 
-struct HeardDescription {
+struct ReceivedDescription {
   std::string urdf;
 };
 
 // `arrival`: arrival in session time. Returns false for a rejected message; `to` is then
 // unspecified.
-[[nodiscard]] bool hear(const JointStateMessage& message, Duration unix_minus_board, Time arrival,
-                        HeardJoints& to);
-[[nodiscard]] bool hear(const PoseCovarianceMessage& message, Duration unix_minus_board,
-                        Time arrival, HeardGuess& to);
-[[nodiscard]] bool hear(const TextMessage& message, HeardDescription& to);
+[[nodiscard]] bool read_message(const JointStateMessage& message, Duration unix_minus_session,
+                                Time arrival, ReceivedJoints& to);
+[[nodiscard]] bool read_message(const PoseCovarianceMessage& message, Duration unix_minus_session,
+                                Time arrival, ReceivedInitialPose& to);
+[[nodiscard]] bool read_message(const TextMessage& message, ReceivedDescription& to);
 
 // Finds the positions of the named joints; ignores all others. Returns names.size(), or the index
 // of the first name that does not occur exactly once.
-[[nodiscard]] std::size_t positions_of(const HeardJoints& joints,
+[[nodiscard]] std::size_t positions_of(const ReceivedJoints& joints,
                                        std::span<const std::string> names,
                                        std::span<double> positions) noexcept;
 

@@ -32,7 +32,7 @@ TopicType status_type() {
           "bf775085475a36553660bc37bce6ce49b109795637f22907fb75ee6d21574c7c"};
 }
 
-StampMessage stamp_message(Time unix_time) {
+TimeMessage time_message(Time unix_time) {
   constexpr std::int64_t last = std::numeric_limits<std::int32_t>::max();
   const std::int64_t ns =
       std::clamp<std::int64_t>(unix_time.nanoseconds, 0, last * k_second_ns + k_second_ns - 1);
@@ -40,12 +40,12 @@ StampMessage stamp_message(Time unix_time) {
           static_cast<std::uint32_t>(ns % k_second_ns)};
 }
 
-Time time_of(const StampMessage& stamp) {
+Time time_of(const TimeMessage& stamp) {
   return {std::int64_t{stamp.sec} * k_second_ns + std::int64_t{stamp.nanosec}};
 }
 
 HeaderMessage header_message(Time unix_time, const char* frame) {
-  return {stamp_message(unix_time), borrowed(frame)};
+  return {time_message(unix_time), borrowed(frame)};
 }
 
 PoseMessage pose_message(const Pose& pose) {

@@ -12,7 +12,7 @@
 
 namespace glint {
 
-using StampMessage = builtin_interfaces_msg_dds__Time_;
+using TimeMessage = builtin_interfaces_msg_dds__Time_;
 using HeaderMessage = std_msgs_msg_dds__Header_;
 using PoseMessage = geometry_msgs_msg_dds__Pose_;
 using PoseStampedMessage = geometry_msgs_msg_dds__PoseStamped_;
@@ -32,8 +32,8 @@ using StatusMessage = glint_msgs_msg_dds__TrackStatus_;
 [[nodiscard]] TopicType status_type();
 
 // Unix time, clamped to 1970..2038.
-[[nodiscard]] StampMessage stamp_message(Time unix_time);
-[[nodiscard]] Time time_of(const StampMessage& stamp);
+[[nodiscard]] TimeMessage time_message(Time unix_time);
+[[nodiscard]] Time time_of(const TimeMessage& stamp);
 
 [[nodiscard]] HeaderMessage header_message(Time unix_time, const char* frame);
 [[nodiscard]] PoseMessage pose_message(const Pose& pose);

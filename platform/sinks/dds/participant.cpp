@@ -70,9 +70,9 @@ struct Participant::Domain {
 
 // Cyclone allows one configuration per domain.
 std::shared_ptr<Participant::Domain> Participant::domain_of(const DdsSettings& settings) {
-  static std::mutex one_opens;
+  static std::mutex open_mutex;
   static std::map<int, std::weak_ptr<Domain>> open;
-  const std::lock_guard lock(one_opens);
+  const std::lock_guard lock(open_mutex);
   const std::string configuration = cyclone_configuration(settings);
   const std::string where = "dds.domain: domain " + std::to_string(settings.domain) +
                             " on interface " + settings.interface;

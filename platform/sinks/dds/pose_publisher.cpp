@@ -65,13 +65,13 @@ PosePublisher::PosePublisher(const DdsSettings& settings)
 }
 
 int PosePublisher::readers() const {
-  std::uint32_t fewest = UINT32_MAX;
+  std::uint32_t readers_min = UINT32_MAX;
   for (const ToolStream& stream : streams_) {
     dds_publication_matched_status_t status{};
     if (dds_get_publication_matched_status(stream.status, &status) != DDS_RETCODE_OK) return 0;
-    fewest = std::min(fewest, status.current_count);
+    readers_min = std::min(readers_min, status.current_count);
   }
-  return static_cast<int>(fewest);
+  return static_cast<int>(readers_min);
 }
 
 bool PosePublisher::write(const PoseSample& sample) {
@@ -87,7 +87,7 @@ bool PosePublisher::write(const PoseSample& sample) {
   StatusMessage message{};
   message.header.frame_id = const_cast<char*>(frame_name(sample.frame));
   if (sample.frame_sequence != 0 || sample.has_pose()) {
-    message.measurement = stamp_message(unix_time(sample.measurement));
+    message.measurement = time_message(unix_time(sample.measurement));
   }
   message.tick_number = static_cast<std::uint32_t>(sample.tick_number);
   message.frame_sequence = static_cast<std::uint32_t>(sample.frame_sequence);
@@ -105,8 +105,8 @@ bool PosePublisher::write_status(ToolStream& stream, Time tick, StatusMessage me
   const std::int64_t skipped = ticks_between(stream.last_written, tick, settings_.tick_period) - 1;
   if (skipped < 0) return false;
   const std::uint64_t not_sent = stream.ticks_not_sent + static_cast<std::uint64_t>(skipped);
-  message.header.stamp = stamp_message(unix_time(tick));
-  message.stream_start = stamp_message(unix_time(stream.start));
+  message.header.stamp = time_message(unix_time(tick));
+  message.stream_start = time_message(unix_time(stream.start));
   message.ticks_not_sent = not_sent;
   message.tick_period_ns = static_cast<std::uint32_t>(settings_.tick_period.nanoseconds);
   if (dds_write(stream.status, &message) != DDS_RETCODE_OK) return false;
@@ -128,13 +128,13 @@ void PosePublisher::write_pose(const ToolStream& stream, const PoseSample& sampl
   TfMessage tf{};
   tf.transforms._length = tf.transforms._maximum = 1;
   tf.transforms._buffer = &transform;
-  write_other(stream.pose, &pose);
-  write_other(stream.pose_covariance, &total);
-  write_other(stream.pose_systematic, &systematic);
-  write_other(tf_, &tf);
+  write_unreliable(stream.pose, &pose);
+  write_unreliable(stream.pose_covariance, &total);
+  write_unreliable(stream.pose_systematic, &systematic);
+  write_unreliable(tf_, &tf);
 }
 
-void PosePublisher::write_other(dds_entity_t writer, const void* message) {
+void PosePublisher::write_unreliable(dds_entity_t writer, const void* message) {
   if (dds_write(writer, message) != DDS_RETCODE_OK) ++others_failed_;
 }
 
@@ -146,9 +146,9 @@ void PosePublisher::write_frame(const FrameTransforms& frame) {
       transform_message(header, names.camera.c_str(), frame.head.T_world_camera),
       transform_message(header, names.robot.c_str(), frame.T_world_robot)};
   TfMessage tf{};
-  tf.transforms._length = tf.transforms._maximum = frame.robot_known ? 2 : 1;
+  tf.transforms._length = tf.transforms._maximum = frame.robot_valid ? 2 : 1;
   tf.transforms._buffer = transforms;
-  write_other(tf_, &tf);
+  write_unreliable(tf_, &tf);
 }
 
 void PosePublisher::write_robot(const Pose& T_world_robot) {
@@ -169,15 +169,15 @@ void PosePublisher::write_static_transforms() {
   TfMessage tf{};
   tf.transforms._length = tf.transforms._maximum = static_cast<std::uint32_t>(transforms.size());
   tf.transforms._buffer = transforms.data();
-  write_other(tf_static_, &tf);
+  write_unreliable(tf_static_, &tf);
 }
 
-void PosePublisher::write_diagnostics(const SinkFigures& figures) {
+void PosePublisher::write_diagnostics(const SinkCounts& counts) {
   Diagnostics text;
   for (const ToolStream& stream : streams_) {
-    if (stream.started) text.add(stream.name, stream.sample, figures);
+    if (stream.started) text.add(stream.name, stream.sample, counts);
   }
-  if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.best_effort);
+  if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.timing_faults);
   if (settings_.losses != nullptr) text.add_losses(*settings_.losses);
   if (settings_.robot != nullptr) text.add_robot(*settings_.robot);
   if (settings_.calibration != nullptr) text.add_calibration(settings_.calibration->all());

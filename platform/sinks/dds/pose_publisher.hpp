@@ -14,7 +14,7 @@
 namespace glint {
 
 // Counts in the diagnostics of each tool.
-struct SinkFigures {
+struct SinkCounts {
   std::uint64_t offered = 0;
   std::uint64_t written = 0;
   std::uint64_t ring_dropped = 0;
@@ -46,7 +46,7 @@ class PosePublisher {
   // tf_static: replaces the transform from world to the robot; keeps all others.
   void write_robot(const Pose& T_world_robot);
 
-  void write_diagnostics(const SinkFigures& figures);
+  void write_diagnostics(const SinkCounts& counts);
 
   // Marks the end of every tool's stream and waits for the readers' acknowledgements.
   void end_streams(Duration limit);
@@ -66,9 +66,9 @@ class PosePublisher {
 
   bool write_status(ToolStream& stream, Time tick, StatusMessage message);
   void write_pose(const ToolStream& stream, const PoseSample& sample);
-  void write_other(dds_entity_t writer, const void* message);
+  void write_unreliable(dds_entity_t writer, const void* message);
   void write_static_transforms();
-  [[nodiscard]] Time unix_time(Time board) const { return board + settings_.unix_minus_board; }
+  [[nodiscard]] Time unix_time(Time board) const { return board + settings_.unix_minus_session; }
   [[nodiscard]] const char* frame_name(ReferenceFrame frame) const;
 
   DdsSettings settings_;

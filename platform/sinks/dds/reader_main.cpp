@@ -12,12 +12,12 @@
 
 namespace {
 
-volatile std::sig_atomic_t told_to_end = 0;
-void tell_to_end(int) { told_to_end = 1; }
+volatile std::sig_atomic_t end_requested = 0;
+void request_end(int) { end_requested = 1; }
 
 void end_on_signals() {
-  std::signal(SIGTERM, tell_to_end);
-  std::signal(SIGINT, tell_to_end);
+  std::signal(SIGTERM, request_end);
+  std::signal(SIGINT, request_end);
   sigset_t signals;  // the parent process may have blocked them
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
@@ -28,7 +28,7 @@ constexpr glint::Duration k_wait = glint::milliseconds(50);
 
 bool read_until_end(glint::StatusReader& reader, double search_s) {
   const dds_time_t search_end = dds_time() + static_cast<dds_time_t>(search_s * 1e9);
-  while (told_to_end == 0) {
+  while (end_requested == 0) {
     // Queried before reading: all messages written before are then read below.
     const bool left = reader.sink_has_left();
     reader.read(left ? glint::Duration{} : k_wait);

@@ -12,7 +12,7 @@ void save_result(const ReaderResult& result, const std::string& file) {
   const nlohmann::ordered_json json = {{"received", result.received},
                                        {"missed", result.missed},
                                        {"poses_received", result.poses_received},
-                                       {"poses_announced", result.poses_announced},
+                                       {"poses_announced", result.poses_expected},
                                        {"first_tick", result.first_tick},
                                        {"last_tick", result.last_tick},
                                        {"streams", result.streams},
@@ -21,7 +21,8 @@ void save_result(const ReaderResult& result, const std::string& file) {
                                         {{"p50", result.latency_p50_us},
                                          {"p99", result.latency_p99_us},
                                          {"max", result.latency_max_us}}}};
-  if (const std::string reason = write_whole_file(file, json.dump(2) + "\n"); !reason.empty()) {
+  if (const std::string reason = write_file_atomically(file, json.dump(2) + "\n");
+      !reason.empty()) {
     throw InputError(file + ": cannot be written: " + reason +
                      "; expected a folder with room and the right to");
   }
@@ -36,7 +37,7 @@ ReaderResult load_result(const std::string& file) {
     json.at("received").get_to(result.received);
     json.at("missed").get_to(result.missed);
     json.at("poses_received").get_to(result.poses_received);
-    json.at("poses_announced").get_to(result.poses_announced);
+    json.at("poses_announced").get_to(result.poses_expected);
     json.at("first_tick").get_to(result.first_tick);
     json.at("last_tick").get_to(result.last_tick);
     json.at("streams").get_to(result.streams);

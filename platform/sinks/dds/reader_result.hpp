@@ -7,11 +7,11 @@
 namespace glint {
 
 struct ReaderResult {
-  std::uint64_t received = 0;         // status messages
-  std::uint64_t missed = 0;           // from gaps in the tick stamps
-  std::uint64_t poses_received = 0;   // PoseStamped messages
-  std::uint64_t poses_announced = 0;  // status messages that state a pose
-  std::uint64_t first_tick = 0;       // tick numbers of the first and last status message
+  std::uint64_t received = 0;        // status messages
+  std::uint64_t missed = 0;          // from gaps in the tick stamps
+  std::uint64_t poses_received = 0;  // PoseStamped messages
+  std::uint64_t poses_expected = 0;  // status messages that state a pose
+  std::uint64_t first_tick = 0;      // tick numbers of the first and last status message
   std::uint64_t last_tick = 0;
   std::uint32_t streams = 0;        // requested tools
   std::uint32_t streams_ended = 0;  // tools whose end of stream was received

@@ -79,7 +79,7 @@ void StatusReader::count(ToolReader& tool, const StatusMessage& status, Time tak
   }
   tool.counter.add(mark);
   const auto state = static_cast<TrackState>(status.state);
-  if (state == TrackState::measured || state == TrackState::predicted) ++result_.poses_announced;
+  if (state == TrackState::measured || state == TrackState::predicted) ++result_.poses_expected;
   if (!any_received_) result_.first_tick = result_.last_tick = status.tick_number;
   any_received_ = true;
   result_.last_tick = extended_count(status.tick_number, result_.last_tick);

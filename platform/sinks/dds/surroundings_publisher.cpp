@@ -45,38 +45,36 @@ std::vector<std::uint8_t> rows_of(FloatTriples points, FloatTriples normals) {
 
 }  // namespace
 
-SurroundingsPublisher::SurroundingsPublisher(const DdsSettings& settings)
+MapPublisher::MapPublisher(const DdsSettings& settings)
     : settings_(settings), participant_(settings) {}
 
-dds_entity_t SurroundingsPublisher::add_writer(const TopicType& type, const std::string& topic,
-                                               int depth) {
+dds_entity_t MapPublisher::add_writer(const TopicType& type, const std::string& topic, int depth) {
   const dds_entity_t writer = participant_.writer(
       type, topic, {Reliability::reliable, Durability::transient_local, std::max(1, depth)});
   writers_.push_back(writer);
   return writer;
 }
 
-void SurroundingsPublisher::write(dds_entity_t writer, const void* message,
-                                  const std::string& what) {
+void MapPublisher::write(dds_entity_t writer, const void* message, const std::string& what) {
   const dds_return_t code = dds_write(writer, message);
   if (code != DDS_RETCODE_OK) {
     throw std::runtime_error("dds: " + what + " was not written: " + dds_strretcode(-code));
   }
 }
 
-std::size_t SurroundingsPublisher::publish_cloud(FloatTriples points, FloatTriples normals,
-                                                 Time unix_time) {
+std::size_t MapPublisher::publish_cloud(FloatTriples points, FloatTriples normals, Time unix_time) {
   const bool with_normals = normals.size() == points.size() && !normals.empty();
   const std::uint32_t step = with_normals ? 24 : 12;
-  const std::size_t most = (k_cloud_message_bytes - k_heading_bytes) / step;
-  const std::size_t all = (points.size() + most - 1) / most;
-  const std::size_t messages = std::min(all, std::size_t{k_cloud_messages_max});
+  const std::size_t points_per_message = (k_cloud_message_bytes - k_heading_bytes) / step;
+  const std::size_t messages_needed = (points.size() + points_per_message - 1) / points_per_message;
+  const std::size_t messages = std::min(messages_needed, std::size_t{k_cloud_messages_max});
   const dds_entity_t writer =
       add_writer(cloud_type(), topic_under(settings_.topic_prefix, k_map_points_name),
                  static_cast<int>(messages));
   std::vector<PointFieldMessage> fields = fields_of(with_normals);
   for (std::size_t i = 0; i < messages; ++i) {
-    const std::size_t first = i * most, count = std::min(most, points.size() - first);
+    const std::size_t first = i * points_per_message,
+                      count = std::min(points_per_message, points.size() - first);
     std::vector<std::uint8_t> data =
         rows_of(points.subspan(first, count),
                 with_normals ? normals.subspan(first, count) : FloatTriples{});
@@ -91,11 +89,11 @@ std::size_t SurroundingsPublisher::publish_cloud(FloatTriples points, FloatTripl
     message.is_dense = true;
     write(writer, &message, "a map's points");
   }
-  return points.size() - std::min(points.size(), messages * most);
+  return points.size() - std::min(points.size(), messages * points_per_message);
 }
 
-void SurroundingsPublisher::publish_octomap(std::span<const std::int8_t> data, double resolution_m,
-                                            Time unix_time) {
+void MapPublisher::publish_octomap(std::span<const std::int8_t> data, double resolution_m,
+                                   Time unix_time) {
   if (data.size() + k_heading_bytes > k_message_bytes_max) {
     throw InputError("octomap: " + std::to_string(data.size()) +
                      " bytes; expected at most 16 MiB in one message: a coarser resolution");
@@ -112,8 +110,8 @@ void SurroundingsPublisher::publish_octomap(std::span<const std::int8_t> data, d
   write(writer, &message, "an octomap");
 }
 
-void SurroundingsPublisher::publish_path(std::span<const UncertainPose> points,
-                                         Duration unix_minus_board, Time unix_time) {
+void MapPublisher::publish_path(std::span<const UncertainPose> points, Duration unix_minus_session,
+                                Time unix_time) {
   const dds_entity_t writer =
       add_writer(path_type(), topic_under(settings_.topic_prefix, k_path_name), 1);
   const char* const frame = settings_.frames.robot.c_str();
@@ -121,7 +119,7 @@ void SurroundingsPublisher::publish_path(std::span<const UncertainPose> points,
   poses.reserve(points.size());
   for (const UncertainPose& point : points) {
     poses.push_back(
-        {header_message(point.time + unix_minus_board, frame), pose_message(point.pose)});
+        {header_message(point.time + unix_minus_session, frame), pose_message(point.pose)});
   }
   PathMessage message{};
   message.header = header_message(unix_time, frame);
@@ -129,37 +127,36 @@ void SurroundingsPublisher::publish_path(std::span<const UncertainPose> points,
   write(writer, &message, "a path");
 }
 
-void SurroundingsPublisher::publish_static(std::span<const StaticTransform> transforms,
-                                           Time unix_time) {
+void MapPublisher::publish_static(std::span<const StaticTransform> transforms, Time unix_time) {
   const dds_entity_t writer = add_writer(tf_type(), k_tf_static_topic, 1);
-  std::vector<TransformMessage> all;
+  std::vector<TransformMessage> messages;
   for (const StaticTransform& one : transforms) {
-    all.push_back(transform_message(header_message(unix_time, one.parent.c_str()),
-                                    one.child.c_str(), one.T_parent_child));
+    messages.push_back(transform_message(header_message(unix_time, one.parent.c_str()),
+                                         one.child.c_str(), one.T_parent_child));
   }
   TfMessage message{};
-  borrow(message.transforms, all);
+  borrow(message.transforms, messages);
   write(writer, &message, "tf_static");
 }
 
-int SurroundingsPublisher::listeners() const {
-  std::uint32_t fewest = writers_.empty() ? 0 : UINT32_MAX;
+int MapPublisher::matched_readers() const {
+  std::uint32_t readers_min = writers_.empty() ? 0 : UINT32_MAX;
   for (const dds_entity_t writer : writers_) {
     dds_publication_matched_status_t status{};
     if (dds_get_publication_matched_status(writer, &status) != DDS_RETCODE_OK) return 0;
-    fewest = std::min(fewest, status.current_count);
+    readers_min = std::min(readers_min, status.current_count);
   }
-  return static_cast<int>(fewest);
+  return static_cast<int>(readers_min);
 }
 
-bool SurroundingsPublisher::wait_for_receipts(Duration limit) const {
+bool MapPublisher::wait_for_acknowledgements(Duration limit) const {
   const dds_time_t deadline = dds_time() + limit.nanoseconds;
-  bool all = true;
+  bool all_acknowledged = true;
   for (const dds_entity_t writer : writers_) {
-    const dds_duration_t left = std::max<dds_duration_t>(0, deadline - dds_time());
-    all = dds_wait_for_acks(writer, left) == DDS_RETCODE_OK && all;
+    const dds_duration_t remaining = std::max<dds_duration_t>(0, deadline - dds_time());
+    all_acknowledged = dds_wait_for_acks(writer, remaining) == DDS_RETCODE_OK && all_acknowledged;
   }
-  return all;
+  return all_acknowledged;
 }
 
 }  // namespace glint

@@ -22,10 +22,10 @@ inline constexpr int k_cloud_messages_max = 1024;  // 2.8 million points with no
 
 using FloatTriples = std::span<const std::array<float, 3>>;
 
-class SurroundingsPublisher {
+class MapPublisher {
  public:
   // Throws as Participant does.
-  explicit SurroundingsPublisher(const DdsSettings& settings);
+  explicit MapPublisher(const DdsSettings& settings);
 
   // sensor_msgs/PointCloud2 on rt/PREFIX/map_points: float32 x, y, z, and normal_x, normal_y,
   // normal_z if there are as many normals as points. Returns the number of omitted points beyond
@@ -37,17 +37,17 @@ class SurroundingsPublisher {
   void publish_octomap(std::span<const std::int8_t> data, double resolution_m, Time unix_time);
 
   // nav_msgs/Path on rt/PREFIX/path: T_robot_tip with each point's own time. Call once.
-  void publish_path(std::span<const UncertainPose> points, Duration unix_minus_board,
+  void publish_path(std::span<const UncertainPose> points, Duration unix_minus_session,
                     Time unix_time);
 
   // tf_static: world to robot and all other static transforms, in one message. Call once.
   void publish_static(std::span<const StaticTransform> transforms, Time unix_time);
 
   // Number of matched readers; the minimum over all topics.
-  [[nodiscard]] int listeners() const;
+  [[nodiscard]] int matched_readers() const;
   // Waits at most `limit` for the acknowledgements of all readers; returns false if some are
   // missing.
-  bool wait_for_receipts(Duration limit) const;
+  bool wait_for_acknowledgements(Duration limit) const;
 
  private:
   dds_entity_t add_writer(const TopicType& type, const std::string& topic, int depth);

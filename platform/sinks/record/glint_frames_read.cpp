@@ -35,12 +35,12 @@ struct FrameShape {
 bool put_rectangle(std::span<const std::uint8_t> reflectivity, std::span<const std::uint8_t> depth,
                    const Roi& roi, const FrameShape& shape, FrameBuffer& frame) {
   if (roi.x1 > shape.width || roi.y1 > shape.height) return false;
-  const bool bright = shape.reflectivity_bits == 8
-                          ? put_rows(reflectivity, roi, shape.width, frame.reflectivity_8)
-                      : shape.reflectivity_bits == 16
-                          ? put_rows(reflectivity, roi, shape.width, frame.reflectivity_16)
-                          : reflectivity.empty();
-  return bright &&
+  const bool reflectivity_fits =
+      shape.reflectivity_bits == 8 ? put_rows(reflectivity, roi, shape.width, frame.reflectivity_8)
+      : shape.reflectivity_bits == 16
+          ? put_rows(reflectivity, roi, shape.width, frame.reflectivity_16)
+          : reflectivity.empty();
+  return reflectivity_fits &&
          (shape.has_depth ? put_rows(depth, roi, shape.width, frame.depth) : depth.empty());
 }
 
@@ -74,16 +74,19 @@ std::optional<FrameMessage> read_frame(MessageBytes bytes, const ImageRows& refl
     roi.y0 = from.get<std::uint16_t>();
     roi.x1 = roi.x0 + from.get<std::uint16_t>();
     roi.y1 = roi.y0 + from.get<std::uint16_t>();
-    const auto bright = from.get_bytes();
-    const auto far = from.get_bytes();
-    if (from.failed() || !put_rectangle(bright, far, roi, shape, frame.pixels)) return std::nullopt;
+    const auto reflectivity_rows = from.get_bytes();
+    const auto depth_rows = from.get_bytes();
+    if (from.failed() || !put_rectangle(reflectivity_rows, depth_rows, roi, shape, frame.pixels))
+      return std::nullopt;
   }
   if (!from.at_end()) frame.stamp_sigma.nanoseconds = from.get<std::int64_t>();  // none: older
   if (from.failed()) return std::nullopt;
   if (in_images) {
     const Roi all{0, 0, shape.width, shape.height};
-    const auto far = shape.has_depth ? std::span(depth.rows) : std::span<const std::uint8_t>();
-    if (!put_rectangle(reflectivity.rows, far, all, shape, frame.pixels)) return std::nullopt;
+    const auto depth_rows =
+        shape.has_depth ? std::span(depth.rows) : std::span<const std::uint8_t>();
+    if (!put_rectangle(reflectivity.rows, depth_rows, all, shape, frame.pixels))
+      return std::nullopt;
   }
   return frame;
 }

@@ -13,7 +13,7 @@
 
 namespace glint {
 
-enum class PixelPlace : std::uint8_t {
+enum class PixelStorage : std::uint8_t {
   in_message,  // as rectangles
   in_images,   // in the two preceding sensor_msgs/Image: whole frames, for any viewer
 };
@@ -22,7 +22,8 @@ enum class PixelPlace : std::uint8_t {
 // and no node at the message's end.
 inline constexpr unsigned k_overrun_kinds = 4;
 
-void write_message(CdrWriter& to, const FramePatch& patch, PixelPlace place, Duration unix_offset);
+void write_message(CdrWriter& to, const FramePatch& patch, PixelStorage place,
+                   Duration unix_offset);
 void write_message(CdrWriter& to, const HeadPose& pose, Duration unix_offset);
 void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset);
 void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offset);

@@ -54,7 +54,7 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
   if (from.get<std::uint32_t>() != count) return std::nullopt;
   for (std::uint32_t i = 0; i < count; ++i) {
     Marker& marker = frame.markers.items[i];
-    marker.bias_taken_m = from.get<float>();
+    marker.bias_subtracted_m = from.get<float>();
     marker.peak = from.get<std::uint16_t>();
   }
   if (from.failed()) return std::nullopt;

@@ -13,7 +13,8 @@ void put_stamps(CdrWriter& to, const Stamped& frame) {
 
 }  // namespace
 
-void write_message(CdrWriter& to, const FramePatch& patch, PixelPlace place, Duration unix_offset) {
+void write_message(CdrWriter& to, const FramePatch& patch, PixelStorage place,
+                   Duration unix_offset) {
   const FrameLayout& layout = patch.layout;
   to.begin();
   put_header(to, layout.mid_exposure + unix_offset, k_camera_frame);
@@ -22,8 +23,8 @@ void write_message(CdrWriter& to, const FramePatch& patch, PixelPlace place, Dur
   to.put(layout.height);
   to.put(layout.reflectivity_bits);
   to.put(layout.has_depth);
-  to.put(place == PixelPlace::in_images);
-  const int count = place == PixelPlace::in_images ? 0 : layout.rectangle_count;
+  to.put(place == PixelStorage::in_images);
+  const int count = place == PixelStorage::in_images ? 0 : layout.rectangle_count;
   to.put_length(static_cast<std::size_t>(count));
   std::size_t at = 0;
   for (int i = 0; i < count; ++i) {
@@ -80,7 +81,7 @@ void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset
   to.put_length(static_cast<std::size_t>(frame.markers.count));
   for (int i = 0; i < frame.markers.count; ++i) {
     const Marker& marker = frame.markers.items[static_cast<std::size_t>(i)];
-    to.put(marker.bias_taken_m);
+    to.put(marker.bias_subtracted_m);
     to.put(marker.peak);
   }
   to.put(static_cast<std::uint8_t>(frame.markers.incomplete));

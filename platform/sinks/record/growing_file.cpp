@@ -23,7 +23,7 @@ constexpr std::size_t k_piece_bytes = std::size_t{64} << 10;
 }  // namespace
 
 GrowingFile::GrowingFile(std::string path) : path_(std::move(path)) {
-  if (is_written_in_place(path_)) throw InputError(path_ + ": a device; expected a file's name");
+  if (is_special_file(path_)) throw InputError(path_ + ": a device; expected a file's name");
   PartFile part = open_part_file(path_);
   part_path_ = std::move(part.path);
   descriptor_ = part.descriptor;
@@ -95,7 +95,7 @@ bool GrowingFile::check_sync() {
   return error == 0 || fail("synchronise", error);
 }
 
-bool GrowingFile::name() {
+bool GrowingFile::finish() {
   if (sync_) sync_->stop();
   if (!check_sync()) return false;
   if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return fail("cut", errno);

@@ -16,7 +16,7 @@ class GrowingFile {
  public:
   // Creates a new PATH.part (part_file.hpp). Throws InputError with the system's message.
   explicit GrowingFile(std::string path);
-  ~GrowingFile();  // keeps part_path() unless name() succeeded
+  ~GrowingFile();  // keeps part_path() unless finish() succeeded
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
@@ -31,7 +31,7 @@ class GrowingFile {
   [[nodiscard]] bool append(std::initializer_list<std::span<const std::uint8_t>> parts);
 
   // Releases unused space, waits for the disk, and renames the file.
-  [[nodiscard]] bool name();
+  [[nodiscard]] bool finish();
 
   [[nodiscard]] const std::string& part_path() const { return part_path_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }

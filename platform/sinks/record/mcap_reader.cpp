@@ -59,14 +59,14 @@ bool McapReader::open_record() {
   if (at_ >= data_end_) return false;
   record_at_ = at_;
   const Heading heading = heading_at(at_, data_end_);
-  const std::uint64_t whole = k_mcap_heading_bytes + heading.bytes;
-  const auto known = known_records_.find(at_);
-  if (known != known_records_.end() &&
-      (known->second.kind != heading.kind || known->second.length != whole))
+  const std::uint64_t record_bytes = k_mcap_heading_bytes + heading.bytes;
+  const auto known = indexed_records_.find(at_);
+  if (known != indexed_records_.end() &&
+      (known->second.kind != heading.kind || known->second.length != record_bytes))
     file_.refuse(at_, kind_and_length(static_cast<std::uint64_t>(heading.kind), heading.bytes),
                  "the record that the index has here; the file is damaged here");
-  file_.read(at_, whole, record_);
-  at_ += whole;
+  file_.read(at_, record_bytes, record_);
+  at_ += record_bytes;
   if (heading.kind != McapKind::data_end) crc_ = crc32(crc_, record_);
   return true;
 }
@@ -147,7 +147,7 @@ void McapReader::check_end(std::uint64_t offset) {
   at_ = data_end_;
 }
 
-std::optional<McapMessage> McapReader::next_whole() {
+std::optional<McapMessage> McapReader::next_intact() {
   for (;;) {
     if (auto found = next_in_chunk()) return found;
     if (!open_record()) return std::nullopt;
@@ -167,7 +167,7 @@ std::optional<McapMessage> McapReader::next_whole() {
         break;
       case McapKind::message: {
         // Among indexed chunks this is another record with a damaged kind.
-        if (ending_ == McapEnding::optional && !known_records_.empty()) break;
+        if (ending_ == McapEnding::optional && !indexed_records_.empty()) break;
         auto found = message(content);
         found->payload = std::span<const std::uint8_t>(record_).subspan(
             k_mcap_heading_bytes + k_mcap_message_heading_bytes);

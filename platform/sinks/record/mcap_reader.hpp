@@ -61,7 +61,7 @@ class McapReader {
   [[nodiscard]] const std::string& profile() const { return profile_; }
   [[nodiscard]] const std::vector<McapAttachmentIndex>& attachments() const { return attachments_; }
   [[nodiscard]] const std::map<std::string, McapTexts>& metadata() const { return metadata_; }
-  [[nodiscard]] bool cut_short() const { return !has_ending_; }
+  [[nodiscard]] bool is_truncated() const { return !has_ending_; }
   [[nodiscard]] const McapLosses& losses() const { return losses_; }
   [[nodiscard]] const InputFile& file() const { return file_; }
 
@@ -70,25 +70,25 @@ class McapReader {
     McapKind kind{};
     std::uint64_t bytes = 0;  // of the content
   };
-  struct KnownRecord {
+  struct IndexedRecord {
     McapKind kind{};
     std::uint64_t length = 0;  // heading included
   };
   [[nodiscard]] bool read_ending();
   [[nodiscard]] bool find_ending();
   void read_summary(std::uint64_t start, std::uint64_t end);
-  void find_what_is_whole();
+  void scan_complete_records();
   void read_header();
   void read_metadata(const McapMetadataIndex& index);
-  void read_metadata_or_leave_it(const McapMetadataIndex& index);
-  void note_record(const Heading& heading, std::uint64_t at);
+  void read_metadata_if_intact(const McapMetadataIndex& index);
+  void index_record(const Heading& heading, std::uint64_t at);
   [[nodiscard]] Heading heading_at(std::uint64_t offset, std::uint64_t end) const;
   void open_chunk(std::uint64_t offset);
   [[nodiscard]] bool open_record();
   void check_end(std::uint64_t offset);
-  [[nodiscard]] std::optional<McapMessage> next_whole();
-  void leave_out_record();
-  void leave_out_tail();
+  [[nodiscard]] std::optional<McapMessage> next_intact();
+  void skip_record();
+  void skip_tail();
   void count_messages(ByteReader records);
   void count_by_statistics();
   std::optional<McapMessage> message(ByteReader& content);
@@ -107,11 +107,11 @@ class McapReader {
   McapEnding ending_;
   ChunkDecoder decoder_;
   bool has_ending_ = false;
-  bool has_data_end_ = false;                             // the records of all messages are present
-  bool ended_ = false;                                    // next() returned nothing
-  bool compressed_ = false;                               // with a known compression: not damaged
-  std::map<std::uint64_t, KnownRecord> known_records_;    // from the index, by offset
-  std::map<std::uint16_t, std::uint64_t> messages_read_;  // by channel
+  bool has_data_end_ = false;  // the records of all messages are present
+  bool ended_ = false;         // next() returned nothing
+  bool compressed_ = false;    // with a known compression: not damaged
+  std::map<std::uint64_t, IndexedRecord> indexed_records_;  // from the index, by offset
+  std::map<std::uint16_t, std::uint64_t> messages_read_;    // by channel
   McapLosses losses_;
   std::uint64_t data_end_ = 0;   // end of the records that next() reads
   std::uint64_t at_ = 0;         // offset of the next record

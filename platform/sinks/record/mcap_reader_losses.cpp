@@ -7,16 +7,16 @@
 namespace glint {
 
 std::optional<McapMessage> McapReader::next() {
-  if (ending_ == McapEnding::required) return next_whole();
+  if (ending_ == McapEnding::required) return next_intact();
   while (!ended_) {
     try {
-      if (auto found = next_whole()) return found;
+      if (auto found = next_intact()) return found;
       ended_ = true;
-      leave_out_tail();
+      skip_tail();
       count_by_statistics();
     } catch (const InputError&) {
       if (compressed_) throw;
-      leave_out_record();
+      skip_record();
     }
   }
   return std::nullopt;
@@ -24,14 +24,14 @@ std::optional<McapMessage> McapReader::next() {
 
 // Skips the record that is open or that could not be opened. The index gives the start of the next
 // record; without an index its own length is used.
-void McapReader::leave_out_record() {
+void McapReader::skip_record() {
   const bool opened = at_ > record_at_;
   const auto kind = opened ? static_cast<McapKind>(record_[0]) : McapKind{};
-  const auto known = known_records_.find(record_at_);
-  const auto next = known_records_.upper_bound(record_at_);
-  const bool is_chunk = known_records_.empty() ? !opened || kind == McapKind::chunk
-                                               : known != known_records_.end() &&
-                                                     known->second.kind == McapKind::chunk;
+  const auto known = indexed_records_.find(record_at_);
+  const auto next = indexed_records_.upper_bound(record_at_);
+  const bool is_chunk = indexed_records_.empty() ? !opened || kind == McapKind::chunk
+                                                 : known != indexed_records_.end() &&
+                                                       known->second.kind == McapKind::chunk;
   chunk_.reset();
   if (kind == McapKind::data_end) {  // its checksum includes the skipped records
     at_ = data_end_;
@@ -45,15 +45,15 @@ void McapReader::leave_out_record() {
     ByteReader content(std::span<const std::uint8_t>(record_).subspan(k_mcap_heading_bytes));
     if (read_chunk_heading(content).compression.empty()) count_messages(content);
   }
-  if (!known_records_.empty())
-    at_ = next == known_records_.end() ? data_end_ : next->first;
+  if (!indexed_records_.empty())
+    at_ = next == indexed_records_.end() ? data_end_ : next->first;
   else if (!opened)
     at_ = data_end_;
-  losses_.bytes += known != known_records_.end() ? known->second.length : at_ - record_at_;
+  losses_.bytes += known != indexed_records_.end() ? known->second.length : at_ - record_at_;
 }
 
 // Counts what follows the last complete record of a truncated file.
-void McapReader::leave_out_tail() {
+void McapReader::skip_tail() {
   if (has_ending_ || has_data_end_) return;
   losses_.at_least = true;
   losses_.bytes += file_.size() - data_end_;

@@ -21,7 +21,7 @@ McapReader::McapReader(const std::string& path, McapEnding ending, ChunkDecoder 
     if (ending == McapEnding::required)
       file_.refuse(file_.size(), "the file ends without its index: it was cut short",
                    "a recording that was closed; --allow-truncated reads what is whole");
-    find_what_is_whole();
+    scan_complete_records();
   }
   read_header();
 }
@@ -46,7 +46,7 @@ bool McapReader::find_ending() {
     attachments_.clear();
     metadata_.clear();
     statistics_.reset();
-    known_records_.clear();
+    indexed_records_.clear();
     return false;
   }
 }
@@ -86,7 +86,7 @@ bool McapReader::read_ending() {
   return true;
 }
 
-void McapReader::read_metadata_or_leave_it(const McapMetadataIndex& index) {
+void McapReader::read_metadata_if_intact(const McapMetadataIndex& index) {
   try {
     read_metadata(index);
   } catch (const InputError&) {
@@ -109,19 +109,19 @@ void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
     if (heading.kind == McapKind::chunk_index) {
       const McapChunkIndex index = read_chunk_index(content);
       if (!inside(index.offset, index.length)) refuse_content(at, "chunk index");
-      known_records_[index.offset] = {McapKind::chunk, index.length};
+      indexed_records_[index.offset] = {McapKind::chunk, index.length};
     }
     if (heading.kind == McapKind::attachment_index) {
       attachments_.push_back(read_attachment_index(content));
       const McapAttachmentIndex& index = attachments_.back();
       if (!inside(index.offset, index.length)) refuse_content(at, "attachment index");
-      known_records_[index.offset] = {McapKind::attachment, index.length};
+      indexed_records_[index.offset] = {McapKind::attachment, index.length};
     }
     if (heading.kind == McapKind::metadata_index) {
       const McapMetadataIndex index = read_metadata_index(content);
       if (!inside(index.offset, index.length)) refuse_content(at, "metadata index");
-      known_records_[index.offset] = {McapKind::metadata, index.length};
-      read_metadata_or_leave_it(index);
+      indexed_records_[index.offset] = {McapKind::metadata, index.length};
+      read_metadata_if_intact(index);
     }
     if (content.failed()) refuse_content(at, "summary");
     at += k_mcap_heading_bytes + heading.bytes;
@@ -129,7 +129,7 @@ void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
 }
 
 // Stores a record's metadata or attachment, which the missing index would have listed.
-void McapReader::note_record(const Heading& heading, std::uint64_t at) {
+void McapReader::index_record(const Heading& heading, std::uint64_t at) {
   const std::uint64_t whole = k_mcap_heading_bytes + heading.bytes;
   if (heading.kind == McapKind::metadata) read_metadata({at, whole, ""});
   if (heading.kind != McapKind::attachment) return;
@@ -146,7 +146,7 @@ void McapReader::note_record(const Heading& heading, std::uint64_t at) {
 }
 
 // Scans the records up to the first truncated one.
-void McapReader::find_what_is_whole() {
+void McapReader::scan_complete_records() {
   data_end_ = k_mcap_magic.size();
   try {
     while (data_end_ < file_.size()) {
@@ -154,7 +154,7 @@ void McapReader::find_what_is_whole() {
       has_data_end_ = heading.kind == McapKind::data_end;
       if (has_data_end_) return;
       try {
-        note_record(heading, data_end_);
+        index_record(heading, data_end_);
       } catch (const InputError&) {
         // Damaged: it is not listed.
       }

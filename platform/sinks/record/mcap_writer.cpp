@@ -25,7 +25,7 @@ McapWriter::McapWriter(const std::string& path, std::string_view profile, std::s
   file_.sync_every(settings.sync_period);
   Bytes bytes(k_mcap_magic.begin(), k_mcap_magic.end());
   append_header(bytes, profile, library);
-  append_with_room({bytes});
+  append_reserved({bytes});
 }
 
 // Upper bound of the bytes that close() appends.
@@ -33,7 +33,7 @@ std::uint64_t McapWriter::ending_bytes() const {
   return k_ending_fixed_bytes + settings_.closing_bytes + index_bytes_ + 10 * channels_.size();
 }
 
-bool McapWriter::append_with_room(std::initializer_list<std::span<const std::uint8_t>> parts) {
+bool McapWriter::append_reserved(std::initializer_list<std::span<const std::uint8_t>> parts) {
   std::uint64_t bytes = ending_bytes();
   for (const auto part : parts) bytes += part.size();
   failed_ = failed_ || !file_.reserve(bytes) || !file_.append(parts);
@@ -53,14 +53,14 @@ std::uint16_t McapWriter::add_channel(const std::string& topic, const std::strin
   const auto id = static_cast<std::uint16_t>(channels_.size());
   channels_.push_back({id, schema->id, topic, "cdr", metadata});
   index_bytes_ += size_of(channels_.back());
-  announced_.push_back(false);
+  described_.push_back(false);
   return id;
 }
 
 void McapWriter::write(const McapMessageHeading& heading, std::span<const std::uint8_t> payload) {
   if (failed_) return;
-  if (!announced_[heading.channel_id]) {
-    announced_[heading.channel_id] = true;
+  if (!described_[heading.channel_id]) {
+    described_[heading.channel_id] = true;
     const McapChannel& channel = channels_[heading.channel_id];
     append_record(chunk_.records, schemas_[channel.schema_id - 1U]);
     append_record(chunk_.records, channel);
@@ -95,7 +95,7 @@ void McapWriter::flush_chunk() {
   }
   index.index_length = times.size();
   index_bytes_ += size_of(index);
-  if (append_with_room({heading, chunk_.records, times})) {
+  if (append_reserved({heading, chunk_.records, times})) {
     const bool first = statistics_.messages == 0;
     statistics_.start = first ? index.start : std::min(statistics_.start, index.start);
     statistics_.end = first ? index.end : std::max(statistics_.end, index.end);
@@ -123,7 +123,7 @@ void McapWriter::attach(const std::string& name, const std::string& media_type,
   Bytes crc;
   append(crc, crc32(crc32(0, checked), data));
   index_bytes_ += size_of(index);
-  if (append_with_room({heading, data, crc})) attachment_indexes_.push_back(std::move(index));
+  if (append_reserved({heading, data, crc})) attachment_indexes_.push_back(std::move(index));
 }
 
 void McapWriter::add_metadata(const std::string& name, const McapTexts& texts) {
@@ -133,7 +133,7 @@ void McapWriter::add_metadata(const std::string& name, const McapTexts& texts) {
   append_metadata(record, name, texts);
   const McapMetadataIndex index{file_.size(), record.size(), name};
   index_bytes_ += size_of(index);
-  if (append_with_room({record})) metadata_indexes_.push_back(index);
+  if (append_reserved({record})) metadata_indexes_.push_back(index);
 }
 
 McapWriter::Summary McapWriter::make_summary() const {
@@ -180,7 +180,7 @@ bool McapWriter::close(const std::string& metadata_name, const McapTexts& metada
   append_footer_heading(summary.records, start, offsets_start);
   append(summary.records, crc32(0, summary.records));
   append(summary.records, k_mcap_magic);
-  return file_.append({summary.records}) && file_.name();
+  return file_.append({summary.records}) && file_.finish();
 }
 
 }  // namespace glint

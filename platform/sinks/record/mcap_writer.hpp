@@ -62,7 +62,7 @@ class McapWriter {
     std::map<std::uint16_t, McapMessageTimes> times;
     std::uint64_t start = 0, end = 0, messages = 0;
   };
-  bool append_with_room(std::initializer_list<std::span<const std::uint8_t>> parts);
+  bool append_reserved(std::initializer_list<std::span<const std::uint8_t>> parts);
   void put_metadata(const std::string& name, const McapTexts& texts);
   [[nodiscard]] std::uint64_t ending_bytes() const;
   [[nodiscard]] Summary make_summary() const;
@@ -72,7 +72,7 @@ class McapWriter {
   bool failed_ = false;
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;
-  std::vector<bool> announced_;  // the channel is described in a chunk of the file or in this one
+  std::vector<bool> described_;  // the channel is described in a chunk of the file or in this one
   Chunk chunk_;
   std::vector<McapChunkIndex> chunk_indexes_;
   std::vector<McapAttachmentIndex> attachment_indexes_;

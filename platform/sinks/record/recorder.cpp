@@ -62,7 +62,7 @@ const Item& item_in(const OfferSlot& slot) {
 
 OfferSlot RecorderLane::claim(std::uint32_t kind, std::size_t bytes) noexcept {
   OfferSlot slot = ring_.claim(bytes);
-  while (slot.empty() && when_full_ == WhenFull::wait && ring_.ever_fits(bytes)) {
+  while (slot.empty() && when_full_ == OverflowPolicy::wait && ring_.ever_fits(bytes)) {
     std::this_thread::sleep_for(k_look_again);
     slot = ring_.claim(bytes);
   }
@@ -88,7 +88,7 @@ bool RecorderLane::offer(const Item& item) noexcept {
 }
 
 bool RecorderLane::offer_frame(const Frame& frame, const Rois& rois) noexcept {
-  if (!keeps_frames(level_)) return true;
+  if (!records_frames(level_)) return true;
   const FrameLayout layout = level_ == RecordingLevel::full
                                  ? whole_frame_layout(frame)
                                  : roi_layout(frame, rois, roi_margin_px_);
@@ -102,22 +102,22 @@ bool RecorderLane::offer_frame(const Frame& frame, const Rois& rois) noexcept {
 }
 
 bool RecorderLane::offer_head_pose(const HeadPose& pose) noexcept {
-  return !keeps_inputs(level_) || offer(pose);
+  return !records_inputs(level_) || offer(pose);
 }
 bool RecorderLane::offer_markers(const MarkerFrame& frame) noexcept {
   return level_ != RecordingLevel::blobs || offer(frame);
 }
 bool RecorderLane::offer_choice(const ChoiceRecord& choice) noexcept {
-  return !keeps_inputs(level_) || offer(choice);
+  return !records_inputs(level_) || offer(choice);
 }
 bool RecorderLane::offer_dropped(const DroppedInput& input) noexcept {
-  return !keeps_inputs(level_) || offer(input);
+  return !records_inputs(level_) || offer(input);
 }
 bool RecorderLane::offer_robot_frame(const RobotFrameRecord& frame) noexcept {
-  return !keeps_inputs(level_) || offer(frame);
+  return !records_inputs(level_) || offer(frame);
 }
 bool RecorderLane::offer_pen_buttons(const PenButtonsRecord& buttons) noexcept {
-  return !keeps_inputs(level_) || offer(buttons);
+  return !records_inputs(level_) || offer(buttons);
 }
 bool RecorderLane::offer_button(const ButtonEvent& event) noexcept { return offer(event); }
 

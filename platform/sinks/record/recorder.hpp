@@ -29,7 +29,7 @@ struct RecorderSettings {
   std::size_t tick_lane_bytes = std::size_t{6} << 20;    // 5 s at 1 kHz
   std::size_t input_lane_bytes = std::size_t{1} << 16;
   std::size_t slice_lane_bytes = std::size_t{1} << 16;
-  WhenFull when_full = WhenFull::drop;
+  OverflowPolicy when_full = OverflowPolicy::drop;
   int roi_margin_px = 8;  // around each region, see roi_layout
   RecordingSettings file;
 };
@@ -60,7 +60,7 @@ class RecorderLane {
   std::atomic<std::uint64_t>* ticket_ = nullptr;
   std::atomic<std::uint64_t> dropped_{0};
   RecordingLevel level_ = RecordingLevel::roi;
-  WhenFull when_full_ = WhenFull::drop;
+  OverflowPolicy when_full_ = OverflowPolicy::drop;
   int roi_margin_px_ = 0;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> k_level_names{"full", "roi", "blobs", "outputs"};
 
-bool stands_in_a_topic(char c) {
+bool is_topic_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
@@ -21,10 +21,10 @@ std::string_view name_of(RecordingLevel level) {
   return k_level_names[static_cast<std::size_t>(level)];
 }
 
-RecordingLevel recording_level(std::string_view name, const std::string& place) {
+RecordingLevel recording_level(std::string_view name, const std::string& prefix) {
   for (std::size_t i = 0; i < k_level_names.size(); ++i)
     if (k_level_names[i] == name) return static_cast<RecordingLevel>(i);
-  throw InputError(place + ": recording level '" + std::string(name) +
+  throw InputError(prefix + ": recording level '" + std::string(name) +
                    "'; expected full, roi, blobs or outputs");
 }
 
@@ -36,7 +36,7 @@ Attachment text_attachment(std::string name, std::string_view text) {
 std::string topic_name(const std::vector<std::string>& tool_names, std::size_t tool) {
   std::string name;
   if (tool < tool_names.size())
-    for (const char c : tool_names[tool]) name += stands_in_a_topic(c) ? c : '_';
+    for (const char c : tool_names[tool]) name += is_topic_character(c) ? c : '_';
   return name.empty() ? "tool" + std::to_string(tool) : name;
 }
 

@@ -28,8 +28,8 @@ namespace glint {
 enum class RecordingLevel : std::uint8_t { full, roi, blobs, outputs };
 
 [[nodiscard]] std::string_view name_of(RecordingLevel level);
-// Throws InputError, which lists the four names; `place` is its prefix, e.g. "cell.toml:12".
-[[nodiscard]] RecordingLevel recording_level(std::string_view name, const std::string& place);
+// Throws InputError, which lists the four names; `prefix` is its prefix, e.g. "cell.toml:12".
+[[nodiscard]] RecordingLevel recording_level(std::string_view name, const std::string& prefix);
 
 // A file stored in the recording, so that the recording replays without other files.
 struct Attachment {
@@ -54,7 +54,7 @@ struct DroppedInput {
   Time mid_exposure;
   Time arrival;
   std::uint64_t sequence = 0;
-  Reason reason = Reason::none;  // frame_late, frame_doubled, frame_invalid
+  Reason reason = Reason::none;  // frame_late, frame_duplicate, frame_invalid
 };
 
 // A frame without pixels: its metadata and marker candidates (level blobs).

@@ -19,10 +19,10 @@ inline constexpr const char* k_fact_dropped = "dropped";
 inline constexpr const char* k_fact_ended_early = "ended_early";  // reason; empty: it did not
 inline constexpr const char* k_fact_output_sha256 = "output_sha256";
 
-[[nodiscard]] constexpr bool keeps_frames(RecordingLevel level) {
+[[nodiscard]] constexpr bool records_frames(RecordingLevel level) {
   return level == RecordingLevel::full || level == RecordingLevel::roi;
 }
-[[nodiscard]] constexpr bool keeps_inputs(RecordingLevel level) {
+[[nodiscard]] constexpr bool records_inputs(RecordingLevel level) {
   return level != RecordingLevel::outputs;
 }
 

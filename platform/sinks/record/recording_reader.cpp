@@ -26,7 +26,7 @@ struct RecordingReader::Body {
     unix_offset = {number(k_fact_unix_offset)};
     if (const auto end = mcap.metadata().find(k_closing_metadata); end != mcap.metadata().end())
       for (const auto& [name, value] : end->second) facts[name] = value;
-    if (facts[k_fact_complete] != "true" && !mcap.cut_short() && !tolerance.incomplete)
+    if (facts[k_fact_complete] != "true" && !mcap.is_truncated() && !tolerance.incomplete)
       refuse_incomplete();
   }
 
@@ -143,7 +143,7 @@ RecordingLosses RecordingReader::losses() const {
   const McapLosses& left_out = body_->mcap.losses();
   RecordingLosses losses;
   const std::string_view of_frames =
-      keeps_frames(body_->level) ? k_frame_topic : k_markers_topic;  // at level outputs neither
+      records_frames(body_->level) ? k_frame_topic : k_markers_topic;  // at level outputs neither
   for (const auto& [topic, count] : left_out.messages) {
     losses.messages += static_cast<std::int64_t>(count);
     if (topic == of_frames) losses.frames = static_cast<std::int64_t>(count);

@@ -91,13 +91,13 @@ RecordingWriter::Body::Body(const std::string& file, const RecordingInfo& info,
       unix_offset(info.unix_offset),
       tool_names(info.tool_names),
       mcap(file, "ros2", "glint", mcap_settings(settings)) {
-  if (keeps_frames(level)) frame = channel(k_frame_topic, "glint_msgs/msg/FramePatch");
+  if (records_frames(level)) frame = channel(k_frame_topic, "glint_msgs/msg/FramePatch");
   if (level == RecordingLevel::full) {
     reflectivity = channel(k_reflectivity_topic, "sensor_msgs/msg/Image");
     depth = channel(k_depth_topic, "sensor_msgs/msg/Image");
   }
   if (level == RecordingLevel::blobs) markers = channel(k_markers_topic, "glint_msgs/msg/Markers");
-  if (keeps_inputs(level)) {
+  if (records_inputs(level)) {
     head_pose = channel(k_head_pose_topic, "glint_msgs/msg/HeadPose");
     choice = channel(k_choice_topic, "glint_msgs/msg/Choice");
     dropped = channel(k_dropped_topic, "glint_msgs/msg/Dropped");
@@ -171,20 +171,20 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
 RecordingWriter::~RecordingWriter() { body_->close(); }
 
 void RecordingWriter::write_frame(const FramePatch& patch) {
-  if (!keeps_frames(body_->level)) return;
+  if (!records_frames(body_->level)) return;
   const FrameLayout& layout = patch.layout;
   const Roi& first = layout.rectangles[0];
   const bool whole = layout.rectangle_count == 1 && first.x0 == 0 && first.y0 == 0 &&
                      first.x1 == layout.width && first.y1 == layout.height;
   const bool as_images = whole && body_->level == RecordingLevel::full;
   if (as_images) body_->write_images(patch);
-  write_message(body_->cdr, patch, as_images ? PixelPlace::in_images : PixelPlace::in_message,
+  write_message(body_->cdr, patch, as_images ? PixelStorage::in_images : PixelStorage::in_message,
                 body_->unix_offset);
   body_->write(body_->frame, layout.arrival);
 }
 
 void RecordingWriter::write_head_pose(const HeadPose& pose) {
-  if (!keeps_inputs(body_->level)) return;
+  if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, pose, body_->unix_offset);
   body_->write(body_->head_pose, pose.time);
 }
@@ -196,25 +196,25 @@ void RecordingWriter::write_markers(const MarkerFrame& frame) {
 }
 
 void RecordingWriter::write_choice(const ChoiceRecord& choice) {
-  if (!keeps_inputs(body_->level)) return;
+  if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, choice, body_->unix_offset);
   body_->write(body_->choice, choice.nominal);
 }
 
 void RecordingWriter::write_dropped(const DroppedInput& input) {
-  if (!keeps_inputs(body_->level)) return;
+  if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, input, body_->unix_offset);
   body_->write(body_->dropped, input.arrival);
 }
 
 void RecordingWriter::write_robot_frame(const RobotFrameRecord& frame) {
-  if (!keeps_inputs(body_->level)) return;
+  if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, frame, body_->unix_offset);
   body_->write(body_->robot_frame, frame.time);
 }
 
 void RecordingWriter::write_pen_buttons(const PenButtonsRecord& buttons) {
-  if (!keeps_inputs(body_->level)) return;
+  if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, buttons, body_->unix_offset);
   body_->write(body_->pen_buttons, buttons.time);
 }

@@ -130,25 +130,25 @@ std::string frame_pose_line(const FramePose& pose) {
 }
 
 void TrajectoryLines::flush() {
-  failed_ = failed_ || !file_.append({bytes_of(waiting_)});
-  if (failed_) lines_lost_ += lines_waiting_;
-  waiting_.clear();
-  lines_waiting_ = 0;
+  failed_ = failed_ || !file_.append({bytes_of(buffered_)});
+  if (failed_) lines_lost_ += lines_buffered_;
+  buffered_.clear();
+  lines_buffered_ = 0;
 }
 
 void TrajectoryLines::add(std::string_view line) {
   if (closed_) return;
-  ++lines_waiting_;
+  ++lines_buffered_;
   if (failed_) return flush();
-  waiting_.append(line) += '\n';
-  if (waiting_.size() >= k_flush_bytes) flush();
+  buffered_.append(line) += '\n';
+  if (buffered_.size() >= k_flush_bytes) flush();
 }
 
 bool TrajectoryLines::close() {
   if (closed_) return !failed_;
   closed_ = true;
   flush();
-  const bool named = file_.name();
+  const bool named = file_.finish();
   failed_ = failed_ || !named;
   return !failed_;
 }

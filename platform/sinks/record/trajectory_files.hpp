@@ -54,8 +54,8 @@ class TrajectoryLines {
  private:
   void flush();
   GrowingFile file_;
-  std::string waiting_;
-  std::uint64_t lines_waiting_ = 0, lines_lost_ = 0;
+  std::string buffered_;
+  std::uint64_t lines_buffered_ = 0, lines_lost_ = 0;
   bool failed_ = false;
   bool closed_ = false;
 };

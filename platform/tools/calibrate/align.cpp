@@ -21,33 +21,35 @@ constexpr double k_alignment_sigma_min_m = 1e-6;
 constexpr double k_alignment_sigma_min_rad = 1e-6;
 constexpr int k_refinements = 3;
 
-std::vector<StampedPose> thinned(std::span<const StampedPose> poses) {
-  std::vector<StampedPose> few;
+std::vector<TimedPose> subsampled(std::span<const TimedPose> poses) {
+  std::vector<TimedPose> subset;
   const std::size_t step = poses.size() / k_start_samples + 1;
-  for (std::size_t i = 0; i < poses.size(); i += step) few.push_back(poses[i]);
-  return few;
+  for (std::size_t i = 0; i < poses.size(); i += step) subset.push_back(poses[i]);
+  return subset;
 }
 
-double median_distance(std::span<const AlignSample> samples, const AlignStart& start) {
+double median_distance(std::span<const AlignSample> samples, const AlignGuess& start) {
   std::vector<double> distances;
   for (const AlignSample& sample : samples) {
-    distances.push_back(align_miss(sample, start).norm());
+    distances.push_back(position_residual(sample, start).norm());
   }
   return median_of(distances);
 }
 
 // The offset on the grid with the least median distance.
-AlignStart best_start(std::span<const StampedPose> poses, std::span<const StampedPose> reference,
-                      const AlignSettings& settings, const std::string& what) {
-  const std::vector<StampedPose> few = thinned(poses);
+AlignGuess best_initial_guess(std::span<const TimedPose> poses,
+                              std::span<const TimedPose> reference, const AlignSettings& settings,
+                              const std::string& what) {
+  const std::vector<TimedPose> subset = subsampled(poses);
   const int steps = static_cast<int>(std::ceil(settings.offset_max_s / k_grid_s));
-  AlignStart best;
+  AlignGuess best;
   double least = -1;
   for (int step = -steps; step <= steps; ++step) {
     const double offset_s = step * k_grid_s;
-    const std::vector<AlignSample> samples = paired(few, reference, offset_s, settings.gap_max_s);
+    const std::vector<AlignSample> samples =
+        paired(subset, reference, offset_s, settings.gap_max_s);
     if (samples.size() < static_cast<std::size_t>(k_align_samples_min)) continue;
-    const AlignStart start = closed_form(samples, offset_s, settings.lever_arm);
+    const AlignGuess start = closed_form(samples, offset_s, settings.lever_arm);
     const double distance = median_distance(samples, start);
     if (least >= 0 && !(distance < least)) continue;
     least = distance;
@@ -56,7 +58,7 @@ AlignStart best_start(std::span<const StampedPose> poses, std::span<const Stampe
   if (least >= 0) return best;
   throw InputError(what + ": fewer than " + std::to_string(k_align_samples_min) +
                    " poses lie within the reference's time, at any offset up to " +
-                   say("%.3g s", settings.offset_max_s) +
+                   format_number("%.3g s", settings.offset_max_s) +
                    "; expected both series to overlap, or --align-starts");
 }
 
@@ -64,10 +66,10 @@ struct Noise {
   double position_m, rotation_rad;
 };
 
-Noise noise_of(std::span<const AlignSample> samples, const AlignStart& start) {
+Noise noise_of(std::span<const AlignSample> samples, const AlignGuess& start) {
   std::vector<double> position, rotation;
   for (const AlignSample& sample : samples) {
-    const Vector3 miss = align_miss(sample, start), turn = align_turn(sample, start);
+    const Vector3 miss = position_residual(sample, start), turn = rotation_residual(sample, start);
     for (int axis = 0; axis < 3; ++axis) {
       position.push_back(miss[axis]);
       rotation.push_back(turn[axis]);
@@ -77,34 +79,34 @@ Noise noise_of(std::span<const AlignSample> samples, const AlignStart& start) {
           std::max(sigma_of(rotation), k_alignment_sigma_min_rad)};
 }
 
-double chi_square(const AlignSample& sample, const AlignStart& start, const Noise& noise) {
-  return align_miss(sample, start).squaredNorm() / (noise.position_m * noise.position_m) +
-         align_turn(sample, start).squaredNorm() / (noise.rotation_rad * noise.rotation_rad);
+double chi_square(const AlignSample& sample, const AlignGuess& start, const Noise& noise) {
+  return position_residual(sample, start).squaredNorm() / (noise.position_m * noise.position_m) +
+         rotation_residual(sample, start).squaredNorm() / (noise.rotation_rad * noise.rotation_rad);
 }
 
-void check_turns(const AlignResult& result, const AlignSettings& settings,
-                 const std::string& what) {
+void check_rotations(const AlignResult& result, const AlignSettings& settings,
+                     const std::string& what) {
   if (settings.lever_arm == LeverArm::none ||
       result.spread.spread_rad[0] >= settings.spread_min_rad)
     return;
   throw InputError(what + ": the tool's direction " +
-                   say_direction(result.spread.directions.col(0)) + " moved by only " +
-                   say_degrees(result.spread.spread_rad[0]) +
+                   format_direction(result.spread.directions.col(0)) + " moved by only " +
+                   format_degrees(result.spread.spread_rad[0]) +
                    " rms, so the lever arm along it stays open; expected at least " +
-                   say_degrees(settings.spread_min_rad) +
+                   format_degrees(settings.spread_min_rad) +
                    ": turn the tool about two axes, or say --no-lever where both see one frame");
 }
 
 // Ratio of misfit: smallest median chi-square of series shifted by k_contrast_shift_s, over that of
 // the aligned series. A static tool gives 1, independent of the noise estimate.
-double offset_contrast(std::span<const StampedPose> poses, std::span<const StampedPose> reference,
-                       const AlignStart& found, const Noise& noise, const AlignSettings& settings) {
+double offset_contrast(std::span<const TimedPose> poses, std::span<const TimedPose> reference,
+                       const AlignGuess& found, const Noise& noise, const AlignSettings& settings) {
   std::vector<double> medians;
   for (const double shift_s : {0.0, -k_contrast_shift_s, k_contrast_shift_s}) {
     const double offset_s = found.offset_s + shift_s;
     const std::vector<AlignSample> samples = paired(poses, reference, offset_s, settings.gap_max_s);
     if (samples.size() < static_cast<std::size_t>(k_align_samples_min)) continue;
-    const AlignStart start =
+    const AlignGuess start =
         shift_s == 0 ? found : closed_form(samples, offset_s, settings.lever_arm);
     std::vector<double> squares;
     for (const AlignSample& sample : samples) squares.push_back(chi_square(sample, start, noise));
@@ -117,11 +119,11 @@ double offset_contrast(std::span<const StampedPose> poses, std::span<const Stamp
 void check_fit(const AlignResult& result, const AlignSettings& settings, bool determined,
                const std::string& what) {
   if (!determined || result.offset_contrast < settings.offset_contrast_min) {
-    throw InputError(what + ": the motion leaves the time offset open: shifted by " +
-                     say("%.3g s", k_contrast_shift_s) + " the series fit " +
-                     say("%.3g", result.offset_contrast) + " times worse; expected at least " +
-                     say("%.3g", settings.offset_contrast_min) +
-                     ": move the tool to and fro, faster");
+    throw InputError(
+        what + ": the motion leaves the time offset open: shifted by " +
+        format_number("%.3g s", k_contrast_shift_s) + " the series fit " +
+        format_number("%.3g", result.offset_contrast) + " times worse; expected at least " +
+        format_number("%.3g", settings.offset_contrast_min) + ": move the tool to and fro, faster");
   }
   if (result.outliers > (1 - settings.inliers_min) * result.samples) {
     throw InputError(what + ": " + std::to_string(result.outliers) + " of " +
@@ -132,14 +134,14 @@ void check_fit(const AlignResult& result, const AlignSettings& settings, bool de
 
 }  // namespace
 
-AlignResult align_series(std::span<const StampedPose> poses, std::span<const StampedPose> reference,
+AlignResult align_series(std::span<const TimedPose> poses, std::span<const TimedPose> reference,
                          const AlignSettings& settings, const std::string& what) {
   AlignResult result;
   result.spread = rotation_spread(poses);
-  check_turns(result, settings, what);
-  const std::vector<StampedPose> smooth = smooth_series(reference);
+  check_rotations(result, settings, what);
+  const std::vector<TimedPose> smooth = smooth_series(reference);
   reference = smooth;
-  AlignStart start = best_start(poses, reference, settings, what);
+  AlignGuess start = best_initial_guess(poses, reference, settings, what);
 
   std::vector<AlignSample> samples;
   AlignFit fit;
@@ -160,10 +162,10 @@ AlignResult align_series(std::span<const StampedPose> poses, std::span<const Sta
 
   double squares = 0, turns = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    result.distances_m.push_back(align_miss(samples[i], start).norm());
+    result.distances_m.push_back(position_residual(samples[i], start).norm());
     if (!result.kept[i]) continue;
-    squares += align_miss(samples[i], start).squaredNorm();
-    turns += align_turn(samples[i], start).squaredNorm();
+    squares += position_residual(samples[i], start).squaredNorm();
+    turns += rotation_residual(samples[i], start).squaredNorm();
   }
   result.samples = static_cast<int>(samples.size());
   result.outliers = static_cast<int>(std::count(result.kept.begin(), result.kept.end(), false));

@@ -50,8 +50,8 @@ struct AlignResult {
 // Both series are on one time axis. Throws InputError, naming `what`, for too little overlap, for
 // motion that leaves a direction or the offset undetermined (names it), and for series of different
 // motions.
-[[nodiscard]] AlignResult align_series(std::span<const StampedPose> poses,
-                                       std::span<const StampedPose> reference,
+[[nodiscard]] AlignResult align_series(std::span<const TimedPose> poses,
+                                       std::span<const TimedPose> reference,
                                        const AlignSettings& settings, const std::string& what);
 
 }  // namespace glint

@@ -86,7 +86,7 @@ void invert(const Information& information, LeverArm lever_arm, AlignFit& fit) {
 
 }  // namespace
 
-AlignFit refined_alignment(std::span<const AlignSample> samples, const AlignStart& start,
+AlignFit refined_alignment(std::span<const AlignSample> samples, const AlignGuess& start,
                            LeverArm lever_arm, AlignLoss loss) {
   PoseBlock x = block_of(start.x), y = block_of(start.y);
   double offset = start.offset_s;

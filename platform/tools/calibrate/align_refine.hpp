@@ -10,7 +10,7 @@ namespace glint {
 enum class AlignLoss { none, cauchy };
 
 struct AlignFit {
-  AlignStart found;
+  AlignGuess found;
   // Of x (rotation vector, translation), y (the same) and the offset; y's entries are 0 without a
   // lever arm.
   Eigen::Matrix<double, 13, 13> covariance = Eigen::Matrix<double, 13, 13>::Zero();
@@ -19,7 +19,7 @@ struct AlignFit {
 
 // The samples' sigmas set the relative weight of position and rotation.
 [[nodiscard]] AlignFit refined_alignment(std::span<const AlignSample> samples,
-                                         const AlignStart& start, LeverArm lever_arm,
+                                         const AlignGuess& start, LeverArm lever_arm,
                                          AlignLoss loss);
 
 }  // namespace glint

@@ -14,8 +14,8 @@ constexpr int k_reweightings = 10;
 constexpr double k_turn_min_rad = 0.03;         // smaller rotations determine their axis poorly
 constexpr double k_turn_difference_rad = 0.04;  // both trackers observe the same angle
 
-MotionPiece piece_of(std::span<const StampedPose> four) {
-  MotionPiece piece;
+MotionSegment piece_of(std::span<const TimedPose> four) {
+  MotionSegment piece;
   for (std::size_t i = 0; i < 4; ++i) {
     piece.seconds[i] = 1e-9 * static_cast<double>(four[i].time.nanoseconds);
     piece.position_m[i] = four[i].pose.translation;
@@ -27,7 +27,7 @@ MotionPiece piece_of(std::span<const StampedPose> four) {
 }
 
 Pose reference_of(const AlignSample& sample, double offset_s) {
-  const PoseOf<double> seen = blended_pose(sample.reference, sample.seconds + offset_s);
+  const PoseOf<double> seen = interpolated_pose(sample.reference, sample.seconds + offset_s);
   return {seen.rotation, seen.translation};
 }
 
@@ -63,7 +63,7 @@ Quaternion rotation_x(std::span<const AlignSample> samples, const Quaternion& y,
 }
 
 // Solves R_x R t_y + t_x = t_reference - R_x t, reweighted; t_y = 0 without a lever arm.
-void translations(std::span<const AlignSample> samples, LeverArm lever_arm, AlignStart& start) {
+void translations(std::span<const AlignSample> samples, LeverArm lever_arm, AlignGuess& start) {
   std::vector<double> weights(samples.size(), 1), distances(samples.size());
   for (int round = 0; round < k_reweightings; ++round) {
     Matrix6 normal = Matrix6::Zero();
@@ -83,7 +83,7 @@ void translations(std::span<const AlignSample> samples, LeverArm lever_arm, Alig
     start.y.translation = solution.head<3>();
     start.x.translation = solution.tail<3>();
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      distances[i] = align_miss(samples[i], start).norm();
+      distances[i] = position_residual(samples[i], start).norm();
     }
     const double limit = median_of(distances);
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -94,21 +94,21 @@ void translations(std::span<const AlignSample> samples, LeverArm lever_arm, Alig
 
 }  // namespace
 
-std::vector<AlignSample> paired(std::span<const StampedPose> poses,
-                                std::span<const StampedPose> reference, double offset_s,
+std::vector<AlignSample> paired(std::span<const TimedPose> poses,
+                                std::span<const TimedPose> reference, double offset_s,
                                 double gap_max_s) {
   std::vector<AlignSample> samples;
-  const auto seconds_of = [](const StampedPose& pose) {
+  const auto seconds_of = [](const TimedPose& pose) {
     return 1e-9 * static_cast<double>(pose.time.nanoseconds);
   };
   std::size_t after = 2;  // the first reference sample after the time
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     const double seconds = seconds_of(pose);
     while (after + 1 < reference.size() && seconds_of(reference[after]) <= seconds + offset_s) {
       ++after;
     }
     if (after + 1 >= reference.size()) break;
-    const MotionPiece piece = piece_of(reference.subspan(after - 2, 4));
+    const MotionSegment piece = piece_of(reference.subspan(after - 2, 4));
     if (seconds + offset_s < piece.seconds[1] || seconds + offset_s > piece.seconds[2]) continue;
     if (piece.seconds[3] - piece.seconds[0] > 3 * gap_max_s) continue;
     samples.push_back({seconds, pose.pose, piece, 1, 1});
@@ -116,8 +116,8 @@ std::vector<AlignSample> paired(std::span<const StampedPose> poses,
   return samples;
 }
 
-AlignStart closed_form(std::span<const AlignSample> samples, double offset_s, LeverArm lever_arm) {
-  AlignStart start;
+AlignGuess closed_form(std::span<const AlignSample> samples, double offset_s, LeverArm lever_arm) {
+  AlignGuess start;
   start.offset_s = offset_s;
   if (lever_arm == LeverArm::unknown) start.y.rotation = rotation_y(samples, offset_s);
   start.x.rotation = rotation_x(samples, start.y.rotation, offset_s);
@@ -125,12 +125,12 @@ AlignStart closed_form(std::span<const AlignSample> samples, double offset_s, Le
   return start;
 }
 
-Vector3 align_miss(const AlignSample& sample, const AlignStart& start) {
+Vector3 position_residual(const AlignSample& sample, const AlignGuess& start) {
   return start.x * (sample.pose * start.y.translation) -
          reference_of(sample, start.offset_s).translation;
 }
 
-Vector3 align_turn(const AlignSample& sample, const AlignStart& start) {
+Vector3 rotation_residual(const AlignSample& sample, const AlignGuess& start) {
   const Quaternion body = start.x.rotation * sample.pose.rotation * start.y.rotation;
   return rotation_vector(
       (body.conjugate() * reference_of(sample, start.offset_s).rotation).normalized());

@@ -11,23 +11,23 @@ namespace glint {
 
 // Returns the poses whose time plus the offset is inside the reference, each with the reference
 // samples around it.
-[[nodiscard]] std::vector<AlignSample> paired(std::span<const StampedPose> poses,
-                                              std::span<const StampedPose> reference,
-                                              double offset_s, double gap_max_s);
+[[nodiscard]] std::vector<AlignSample> paired(std::span<const TimedPose> poses,
+                                              std::span<const TimedPose> reference, double offset_s,
+                                              double gap_max_s);
 
-struct AlignStart {
+struct AlignGuess {
   Pose x, y;
   double offset_s = 0;
 };
 
 // Both rotations from relative rotations between samples, then both translations by iteratively
 // reweighted least squares.
-[[nodiscard]] AlignStart closed_form(std::span<const AlignSample> samples, double offset_s,
+[[nodiscard]] AlignGuess closed_form(std::span<const AlignSample> samples, double offset_s,
                                      LeverArm lever_arm);
 
-// align_miss: the body's position by X pose Y, minus the reference's. align_turn: the rotation
-// between the two.
-[[nodiscard]] Vector3 align_miss(const AlignSample& sample, const AlignStart& start);
-[[nodiscard]] Vector3 align_turn(const AlignSample& sample, const AlignStart& start);
+// position_residual: the body's position by X pose Y, minus the reference's. rotation_residual: the
+// rotation between the two.
+[[nodiscard]] Vector3 position_residual(const AlignSample& sample, const AlignGuess& start);
+[[nodiscard]] Vector3 rotation_residual(const AlignSample& sample, const AlignGuess& start);
 
 }  // namespace glint

@@ -43,12 +43,12 @@ Alignment load_alignment(const std::string& file) {
   return alignment;
 }
 
-std::vector<StampedPose> in_poses_frame(std::vector<StampedPose> reference,
-                                        const Alignment& alignment) {
+std::vector<TimedPose> in_poses_frame(std::vector<TimedPose> reference,
+                                      const Alignment& alignment) {
   const Pose T_poses_reference = alignment.T_reference_poses.inverse();
   const Pose T_body_tool = alignment.T_tool_body.inverse();
   const Duration offset{static_cast<std::int64_t>(std::llround(1e9 * alignment.offset_s))};
-  for (StampedPose& sample : reference) {
+  for (TimedPose& sample : reference) {
     sample.time = sample.time - offset;
     sample.pose = T_poses_reference * sample.pose * T_body_tool;
   }

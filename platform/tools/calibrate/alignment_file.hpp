@@ -18,7 +18,7 @@ struct Alignment {
 [[nodiscard]] Alignment load_alignment(const std::string& file);
 
 // Converts the reference's body poses into tool poses, in the poses' frame and time.
-[[nodiscard]] std::vector<StampedPose> in_poses_frame(std::vector<StampedPose> reference,
-                                                      const Alignment& alignment);
+[[nodiscard]] std::vector<TimedPose> in_poses_frame(std::vector<TimedPose> reference,
+                                                    const Alignment& alignment);
 
 }  // namespace glint

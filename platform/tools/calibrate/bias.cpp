@@ -22,14 +22,14 @@ Time later(Time time, double seconds) {
 }
 
 // Interpolates the reference between the two samples around the time; empty in a gap or outside.
-std::optional<Pose> at(std::span<const StampedPose> reference, Time time, double gap_max_s) {
+std::optional<Pose> at(std::span<const TimedPose> reference, Time time, double gap_max_s) {
   const auto after =
       std::lower_bound(reference.begin(), reference.end(), time,
-                       [](const StampedPose& sample, Time t) { return sample.time < t; });
+                       [](const TimedPose& sample, Time t) { return sample.time < t; });
   if (after == reference.end()) return std::nullopt;
   if (after->time == time) return after->pose;
   if (after == reference.begin()) return std::nullopt;
-  const StampedPose& before = *(after - 1);
+  const TimedPose& before = *(after - 1);
   if ((after->time - before.time).seconds() > gap_max_s) return std::nullopt;
   return interpolate(before, *after, time);
 }
@@ -51,11 +51,11 @@ Vector6 error_of(const Sample& sample, CorrectionFrame frame) {
   return error;
 }
 
-std::vector<Sample> samples_at_rest(std::span<const StampedPose> poses,
-                                    std::span<const StampedPose> reference,
-                                    const BiasSettings& settings, int& moving) {
+std::vector<Sample> static_samples(std::span<const TimedPose> poses,
+                                   std::span<const TimedPose> reference,
+                                   const BiasSettings& settings, int& moving) {
   std::vector<Sample> samples;
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     const auto truth = at(reference, pose.time, settings.gap_max_s);
     const auto before = at(reference, later(pose.time, -k_speed_window_s), settings.gap_max_s);
     const auto after = at(reference, later(pose.time, k_speed_window_s), settings.gap_max_s);
@@ -64,7 +64,7 @@ std::vector<Sample> samples_at_rest(std::span<const StampedPose> poses,
     const double speed = (after->translation - before->translation).norm() / window_s;
     const double turn =
         rotation_vector(after->rotation * before->rotation.conjugate()).norm() / window_s;
-    if (speed > settings.speed_max_m_s || turn > settings.turn_max_rad_s) {
+    if (speed > settings.speed_max_m_s || turn > settings.angular_speed_max_rad_s) {
       ++moving;
     } else {
       samples.push_back({pose.pose, *truth});
@@ -73,24 +73,24 @@ std::vector<Sample> samples_at_rest(std::span<const StampedPose> poses,
   return samples;
 }
 
-struct Middle {
+struct RobustCentre {
   Vector6 value = Vector6::Zero(), sigma = Vector6::Zero();
 };
 
-Middle robust_middle(const std::vector<Vector6>& errors) {
-  Middle middle;
+RobustCentre robust_centre(const std::vector<Vector6>& errors) {
+  RobustCentre centre;
   for (int axis = 0; axis < 6; ++axis) {
     std::vector<double> values;
     for (const Vector6& error : errors) values.push_back(error[axis]);
-    middle.value[axis] = median_of(values);
-    for (double& value : values) value -= middle.value[axis];
-    middle.sigma[axis] = std::max(sigma_of(values), k_sigma_min);
+    centre.value[axis] = median_of(values);
+    for (double& value : values) value -= centre.value[axis];
+    centre.sigma[axis] = std::max(sigma_of(values), k_sigma_min);
   }
-  return middle;
+  return centre;
 }
 
 // Mean, and its sigma from the spread and the effective number of independent samples.
-void take_mean(const std::vector<Vector6>& errors, BiasResult& result) {
+void set_mean(const std::vector<Vector6>& errors, BiasResult& result) {
   Vector6 mean = Vector6::Zero(), square = Vector6::Zero();
   const auto n = static_cast<double>(errors.size());
   for (const Vector6& error : errors) mean += error / n;
@@ -101,21 +101,21 @@ void take_mean(const std::vector<Vector6>& errors, BiasResult& result) {
     shifts.push_back(off.head<3>());
     turns.push_back(off.tail<3>());
   }
-  result.correlated = std::max(correlation_factor(shifts), correlation_factor(turns));
-  const Vector6 sigma = (square * (result.correlated / n)).cwiseSqrt();
-  result.correction.shift_m = mean.head<3>();
-  result.correction.turn_rad = mean.tail<3>();
-  result.shift_sigma_m = sigma.head<3>();
-  result.turn_sigma_rad = sigma.tail<3>();
+  result.variance_inflation = std::max(correlation_factor(shifts), correlation_factor(turns));
+  const Vector6 sigma = (square * (result.variance_inflation / n)).cwiseSqrt();
+  result.correction.translation_m = mean.head<3>();
+  result.correction.rotation_rad = mean.tail<3>();
+  result.translation_sigma_m = sigma.head<3>();
+  result.rotation_sigma_rad = sigma.tail<3>();
 }
 
-void widen(ValidRange& range, double value) {
+void extend(ValidRange& range, double value) {
   range.from = std::min(range.from, value);
   range.to = std::max(range.to, value);
 }
 
-ValidRange with_margin(const ValidRange& range, double margin, double most) {
-  return {std::max(0.0, range.from - margin), std::min(most, range.to + margin)};
+ValidRange with_margin(const ValidRange& range, double margin, double limit) {
+  return {std::max(0.0, range.from - margin), std::min(limit, range.to + margin)};
 }
 
 void take_validity(const std::vector<Sample>& samples, const BiasSettings& settings,
@@ -123,10 +123,10 @@ void take_validity(const std::vector<Sample>& samples, const BiasSettings& setti
   ValidRange range{1e9, 0}, off_axis{std::numbers::pi, 0}, tilt{std::numbers::pi, 0};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!result.kept[i]) continue;
-    const SeenFrom seen = seen_from(samples[i].measured);
-    widen(range, seen.range_m);
-    widen(off_axis, std::acos(std::clamp(seen.off_axis_cosine, -1.0, 1.0)));
-    widen(tilt, std::acos(std::clamp(seen.tilt_cosine, -1.0, 1.0)));
+    const ViewGeometry seen = view_geometry(samples[i].measured);
+    extend(range, seen.range_m);
+    extend(off_axis, std::acos(std::clamp(seen.off_axis_cosine, -1.0, 1.0)));
+    extend(tilt, std::acos(std::clamp(seen.tilt_cosine, -1.0, 1.0)));
   }
   result.correction.range_m = with_margin(range, settings.margin_m, 1e9);
   result.off_axis_rad = with_margin(off_axis, settings.margin_rad, std::numbers::pi);
@@ -185,36 +185,36 @@ void check_mean(const BiasResult& result, const BiasSettings& settings, const st
   const auto largest = [](const Vector3& mean, const Vector3& sigma) {
     return mean.cwiseAbs().cwiseQuotient(sigma.cwiseMax(k_sigma_min)).maxCoeff();
   };
-  const double sigmas = std::max(largest(result.correction.shift_m, result.shift_sigma_m),
-                                 largest(result.correction.turn_rad, result.turn_sigma_rad));
+  const double sigmas =
+      std::max(largest(result.correction.translation_m, result.translation_sigma_m),
+               largest(result.correction.rotation_rad, result.rotation_sigma_rad));
   if (sigmas >= settings.sigmas_min) return;
-  throw InputError(what + ": the mean error, " + say_mm(result.correction.shift_m.norm()) +
-                   " and " + say_degrees(result.correction.turn_rad.norm()) + ", is " +
-                   say("%.2g", sigmas) + " of its sigmas; expected " +
-                   say("%.2g", settings.sigmas_min) +
+  throw InputError(what + ": the mean error, " + format_mm(result.correction.translation_m.norm()) +
+                   " and " + format_degrees(result.correction.rotation_rad.norm()) + ", is " +
+                   format_number("%.2g", sigmas) + " of its sigmas; expected " +
+                   format_number("%.2g", settings.sigmas_min) +
                    ": there is nothing to correct, or the run is too short to tell");
 }
 
 }  // namespace
 
-BiasResult calibrate_bias(std::span<const StampedPose> poses,
-                          std::span<const StampedPose> reference, const BiasSettings& settings,
-                          const std::string& what) {
+BiasResult calibrate_bias(std::span<const TimedPose> poses, std::span<const TimedPose> reference,
+                          const BiasSettings& settings, const std::string& what) {
   BiasResult result;
   result.correction.frame = settings.frame;
-  const std::vector<Sample> samples = samples_at_rest(poses, reference, settings, result.moving);
+  const std::vector<Sample> samples = static_samples(poses, reference, settings, result.moving);
   result.samples = static_cast<int>(samples.size());
   check_count(result, what);
   std::vector<Vector6> errors, near;
   for (const Sample& sample : samples) errors.push_back(error_of(sample, settings.frame));
-  const Middle middle = robust_middle(errors);
+  const RobustCentre centre = robust_centre(errors);
   for (const Vector6& error : errors) {
-    const double square = (error - middle.value).cwiseQuotient(middle.sigma).squaredNorm();
+    const double square = (error - centre.value).cwiseQuotient(centre.sigma).squaredNorm();
     result.kept.push_back(square <= k_chi_square_of_six);
     if (result.kept.back()) near.push_back(error);
   }
   result.outliers = result.samples - static_cast<int>(near.size());
-  if (near.size() >= 2) take_mean(near, result);
+  if (near.size() >= 2) set_mean(near, result);
   check_mean(result, settings, what);
   take_validity(samples, settings, result);
   take_residuals(samples, result);

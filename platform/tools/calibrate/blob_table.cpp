@@ -13,7 +13,7 @@ constexpr std::size_t k_columns = 5;
 constexpr std::array<const char*, k_columns> k_names = {"time_s", "x_px", "y_px", "range_m",
                                                         "peak"};
 constexpr std::array<double, k_columns> k_least = {-9e9, -1e5, -1e5, 0.01, 1};
-constexpr std::array<double, k_columns> k_most = {9e9, 1e5, 1e5, 100, 65535};
+constexpr std::array<double, k_columns> k_value_max = {9e9, 1e5, 1e5, 100, 65535};
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -21,20 +21,20 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::array<double, k_columns> row_of(std::string_view line, const std::string& place) {
+std::array<double, k_columns> row_of(std::string_view line, const std::string& location) {
   std::array<double, k_columns> row{};
   std::string_view rest = line;
   for (std::size_t i = 0; i < k_columns; ++i) {
     const std::size_t comma = rest.find(',');
     if ((i + 1 == k_columns) != (comma == std::string_view::npos)) {
-      throw InputError(place + ": \"" + std::string(line.substr(0, 60)) +
+      throw InputError(location + ": \"" + std::string(line.substr(0, 60)) +
                        "\"; expected five columns " + k_heading);
     }
     const std::string_view field = trimmed(rest.substr(0, comma));
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), row[i]);
     if (error != std::errc{} || end != field.data() + field.size() || !(row[i] >= k_least[i]) ||
-        !(row[i] <= k_most[i])) {
-      throw InputError(place + ": " + k_names[i] + " is \"" + std::string(field.substr(0, 40)) +
+        !(row[i] <= k_value_max[i])) {
+      throw InputError(location + ": " + k_names[i] + " is \"" + std::string(field.substr(0, 40)) +
                        "\"; expected a number in the unit of its name, a peak from 1 to 65535");
     }
     if (comma != std::string_view::npos) rest = rest.substr(comma + 1);
@@ -60,11 +60,11 @@ BlobSeries blobs_from_text(std::string_view text, const std::string& path, const
     const bool heading = first && line == k_heading;
     first = false;
     if (heading) continue;
-    const std::string place = path + ":" + std::to_string(number);
-    const std::array<double, k_columns> row = row_of(line, place);
+    const std::string location = path + ":" + std::to_string(number);
+    const std::array<double, k_columns> row = row_of(line, location);
     const Time time{static_cast<std::int64_t>(std::llround(1e9 * row[0]))};
     if (!series.frames.empty() && time < series.frames.back().time) {
-      throw InputError(place + ": time_s runs backwards; expected rows in order of time");
+      throw InputError(location + ": time_s runs backwards; expected rows in order of time");
     }
     if (series.frames.empty() || series.frames.back().time != time)
       series.frames.push_back({time, {}});
@@ -72,10 +72,10 @@ BlobSeries blobs_from_text(std::string_view text, const std::string& path, const
     const Result<LocalRays> rays =
         local_rays(camera.model, {row[1], row[2]}, k_ray_steps_max, steps);
     if (!rays) {
-      throw InputError(place + ": the lens of " + camera.name +
+      throw InputError(location + ": the lens of " + camera.name +
                        " has no ray at this pixel; expected blobs within its picture");
     }
-    SeenBlob blob;
+    ObservedBlob blob;
     blob.rays = rays.value;
     blob.surface_range_m = row[3];
     blob.peak = row[4];

@@ -19,7 +19,7 @@ const cv::Size k_corner_window(4, 4);         // half size; smaller than the cor
 constexpr double k_white_percentile = 0.999;  // a lamp in the image does not darken the target
 
 // Returns an 8-bit image, scaled so that the brightest thousandth saturates.
-cv::Mat eight_bits(const cv::Mat& picture) {
+cv::Mat to_8_bit(const cv::Mat& picture) {
   cv::Mat values;
   picture.reshape(1, 1).convertTo(values, CV_32F);
   std::vector<float> sorted(values.begin<float>(), values.end<float>());
@@ -33,7 +33,7 @@ cv::Mat eight_bits(const cv::Mat& picture) {
 }
 
 cv::Mat load(const std::string& path, const cv::Size& size) {
-  Picture read = read_picture(path);
+  Image read = read_image_file(path);
   cv::Mat picture(read.height, read.width, CV_16UC(read.channels), read.values.data());
   if (read.channels == 3) cv::cvtColor(picture, picture, cv::COLOR_RGB2GRAY);
   if (size.area() > 0 && picture.size() != size) {
@@ -42,12 +42,13 @@ cv::Mat load(const std::string& path, const cv::Size& size) {
                      std::to_string(size.width) + " x " + std::to_string(size.height) +
                      " like the first picture");
   }
-  return eight_bits(picture);
+  return to_8_bit(picture);
 }
 
-bool find(const cv::Mat& picture, const BoardSettings& settings, std::vector<cv::Point2f>& found) {
+bool find_target(const cv::Mat& picture, const CameraCalibrationSettings& settings,
+                 std::vector<cv::Point2f>& found) {
   const cv::Size size(settings.columns, settings.rows);
-  if (settings.pattern == BoardPattern::circles) return cv::findCirclesGrid(picture, size, found);
+  if (settings.pattern == TargetPattern::circles) return cv::findCirclesGrid(picture, size, found);
   // CALIB_CB_NORMALIZE_IMAGE finds a target in a bright scene but misses one before a dark
   // background: it is the second attempt.
   if (!cv::findChessboardCornersSB(picture, size, found, 0) &&
@@ -75,7 +76,7 @@ double tilt_of(const std::vector<cv::Mat>& rotations) {
 
 // One detection of the target.
 struct View {
-  std::vector<cv::Point2f> seen;
+  std::vector<cv::Point2f> corners_px;
   std::size_t frame = 0;
 };
 
@@ -86,13 +87,13 @@ struct Views {
   std::vector<View> found;
 };
 
-Views views_of(const std::vector<std::string>& images, const BoardSettings& settings) {
+Views views_of(const std::vector<std::string>& images, const CameraCalibrationSettings& settings) {
   Views views{"--images", {}, images.size(), {}};
   for (const std::string& path : images) {
     const cv::Mat picture = load(path, views.size);
     views.size = picture.size();
     View view;
-    if (find(picture, settings, view.seen)) views.found.push_back(std::move(view));
+    if (find_target(picture, settings, view.corners_px)) views.found.push_back(std::move(view));
   }
   return views;
 }
@@ -107,12 +108,13 @@ cv::Mat reflectivity_of(const Frame& frame) {
       std::copy_n(frame.reflectivity_8.row(v), picture.cols, row);
     }
   }
-  return eight_bits(picture);
+  return to_8_bit(picture);
 }
 
-Views views_of(FrameSource& source, const std::string& what, const BoardSettings& settings) {
+Views views_of(FrameSource& source, const std::string& what,
+               const CameraCalibrationSettings& settings) {
   Views views{what, {}, 0, {}};
-  std::size_t step = k_board_frame_step;
+  std::size_t step = k_target_frame_step;
   source.start({});
   ArrivedFrame arrived;
   for (std::size_t number = 0; source.wait(arrived); ++number) {
@@ -121,27 +123,27 @@ Views views_of(FrameSource& source, const std::string& what, const BoardSettings
       const cv::Mat picture = reflectivity_of(arrived.frame);
       views.size = picture.size();
       View view{{}, number};
-      if (find(picture, settings, view.seen)) views.found.push_back(std::move(view));
+      if (find_target(picture, settings, view.corners_px)) views.found.push_back(std::move(view));
     }
-    source.give_back(arrived);
-    if (views.found.size() <= k_board_views_max) continue;
+    source.release_pixels(arrived);
+    if (views.found.size() <= k_target_views_max) continue;
     step *= 2;
     std::erase_if(views.found, [&](const View& view) { return view.frame % step != 0; });
   }
   return views;
 }
 
-void require_boards(const Views& views, const BoardSettings& settings) {
-  if (views.found.size() >= k_board_images_min) return;
+void require_detections(const Views& views, const CameraCalibrationSettings& settings) {
+  if (views.found.size() >= k_target_images_min) return;
   throw InputError(views.what + ": a board of " + std::to_string(settings.columns) + " x " +
                    std::to_string(settings.rows) + " was found in " +
                    std::to_string(views.found.size()) + " of " + std::to_string(views.searched) +
-                   " pictures; expected at least " + std::to_string(k_board_images_min) +
+                   " pictures; expected at least " + std::to_string(k_target_images_min) +
                    ": count the inner corners (or circles) of a row and of a column, and show " +
                    "the whole board");
 }
 
-std::vector<cv::Point3f> board_points(const BoardSettings& settings) {
+std::vector<cv::Point3f> target_points(const CameraCalibrationSettings& settings) {
   std::vector<cv::Point3f> board;
   const auto spacing = static_cast<float>(settings.spacing_m);
   for (int row = 0; row < settings.rows; ++row)
@@ -151,21 +153,21 @@ std::vector<cv::Point3f> board_points(const BoardSettings& settings) {
   return board;
 }
 
-BoardFit fit_lens(const Views& views, const BoardSettings& settings) {
-  require_boards(views, settings);
-  BoardCorners all;
-  const std::vector<cv::Point3f> board = board_points(settings);
-  for (const View& view : views.found) all.corners.push_back(view.seen);
-  all.boards.assign(all.corners.size(), board);
+CameraFit fit_lens(const Views& views, const CameraCalibrationSettings& settings) {
+  require_detections(views, settings);
+  TargetCorners all;
+  const std::vector<cv::Point3f> board = target_points(settings);
+  for (const View& view : views.found) all.corners.push_back(view.corners_px);
+  all.target_points_m.assign(all.corners.size(), board);
   const std::vector<std::vector<cv::Point2f>>& seen = all.corners;
-  const BoardLens lens = solve_lens(all, views.size, settings.lens);
-  BoardFit fit;
+  const TargetLens lens = solve_lens(all, views.size, settings.lens);
+  CameraFit fit;
   fit.tilt_rad = tilt_of(lens.rotations);
   if (fit.tilt_rad < settings.tilt_min_rad) {
     throw InputError(views.what + ": the board's normal moved by only " +
-                     say_degrees(fit.tilt_rad) +
+                     format_degrees(fit.tilt_rad) +
                      " rms, so the focal length stays open; expected at least " +
-                     say_degrees(settings.tilt_min_rad) + ": tilt the board to all sides");
+                     format_degrees(settings.tilt_min_rad) + ": tilt the board to all sides");
   }
   fit.model = lens.model;
   fit.images = static_cast<int>(views.searched);
@@ -180,7 +182,7 @@ BoardFit fit_lens(const Views& views, const BoardSettings& settings) {
       const cv::Point2f miss = projected[k] - seen[i][k];
       const double length = std::hypot(miss.x, miss.y);
       squares += length * length;
-      fit.most_px = std::max(fit.most_px, length);
+      fit.error_max_px = std::max(fit.error_max_px, length);
       const double x = (seen[i][k].x + 0.5 - fit.model.cx) / fit.model.fx;
       const double y = (seen[i][k].y + 0.5 - fit.model.cy) / fit.model.fy;
       fit.model.field_tangent_max = std::max(fit.model.field_tangent_max, std::hypot(x, y));
@@ -198,12 +200,13 @@ BoardFit fit_lens(const Views& views, const BoardSettings& settings) {
 
 }  // namespace
 
-BoardFit calibrate_board(const std::vector<std::string>& images, const BoardSettings& settings) {
+CameraFit calibrate_camera(const std::vector<std::string>& images,
+                           const CameraCalibrationSettings& settings) {
   return fit_lens(views_of(images, settings), settings);
 }
 
-BoardFit calibrate_board(FrameSource& source, const std::string& what,
-                         const BoardSettings& settings) {
+CameraFit calibrate_camera(FrameSource& source, const std::string& what,
+                           const CameraCalibrationSettings& settings) {
   return fit_lens(views_of(source, what, settings), settings);
 }
 

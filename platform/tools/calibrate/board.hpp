@@ -9,22 +9,22 @@
 
 namespace glint {
 
-enum class BoardPattern { chessboard, circles };
+enum class TargetPattern { chessboard, circles };
 
-struct BoardSettings {
-  BoardPattern pattern = BoardPattern::chessboard;
+struct CameraCalibrationSettings {
+  TargetPattern pattern = TargetPattern::chessboard;
   int columns = 9, rows = 6;  // inner corners, or circles
   double spacing_m = 0.025;
   Lens lens = Lens::rational;  // or brown
   double tilt_min_rad = 0.1;   // rms of the target's normal; less leaves the focal length open
 };
 
-inline constexpr std::size_t k_board_images_min = 5;
+inline constexpr std::size_t k_target_images_min = 5;
 
-struct BoardFit {
+struct CameraFit {
   CameraModel model;
-  double rms_px = 0;   // per axis
-  double most_px = 0;  // largest |error|
+  double rms_px = 0;        // per axis
+  double error_max_px = 0;  // largest |error|
   double tilt_rad = 0;
   // As LensSigmas of board_lens.hpp.
   double principal_point_sigma_px = 0, focal_sigma = 0;
@@ -34,15 +34,15 @@ struct BoardFit {
 
 // Throws InputError for an unreadable image, an image of another size, too few detections of the
 // target (most often a wrong number of corners), and targets that are all parallel.
-[[nodiscard]] BoardFit calibrate_board(const std::vector<std::string>& images,
-                                       const BoardSettings& settings);
+[[nodiscard]] CameraFit calibrate_camera(const std::vector<std::string>& images,
+                                         const CameraCalibrationSettings& settings);
 
-// Calibrates from the reflectivity of recorded frames. Searches every k_board_frame_step-th frame
-// and doubles the step until at most k_board_views_max detections, spread over the recording,
+// Calibrates from the reflectivity of recorded frames. Searches every k_target_frame_step-th frame
+// and doubles the step until at most k_target_views_max detections, spread over the recording,
 // remain. `what` names the source in messages. Reads the source to its end.
-inline constexpr std::size_t k_board_frame_step = 4, k_board_views_max = 60;
-[[nodiscard]] BoardFit calibrate_board(FrameSource& source, const std::string& what,
-                                       const BoardSettings& settings);
+inline constexpr std::size_t k_target_frame_step = 4, k_target_views_max = 60;
+[[nodiscard]] CameraFit calibrate_camera(FrameSource& source, const std::string& what,
+                                         const CameraCalibrationSettings& settings);
 
 // Returns the model's ray at each pixel centre for a cell's ray_table; zeros where there is none.
 [[nodiscard]] std::vector<float> ray_table_of(const CameraModel& model);

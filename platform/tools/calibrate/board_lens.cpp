@@ -9,8 +9,9 @@
 namespace glint {
 namespace {
 
-constexpr int k_board_parts = 9;
-constexpr std::size_t k_corners_left = 3;  // uses a target only if a third of its corners remain
+constexpr int k_jackknife_parts = 9;
+constexpr std::size_t k_corner_share_inverse =
+    3;  // uses a target only if a third of its corners remain
 
 CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv::Size& size,
                      Lens lens) {
@@ -30,8 +31,9 @@ CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv:
 }
 
 // Requires an initial guess for a rational lens, whose cost has distant local minima.
-BoardLens solve(const BoardCorners& seen, const cv::Size& size, Lens lens, const BoardLens* start) {
-  BoardLens solved;
+TargetLens solve(const TargetCorners& seen, const cv::Size& size, Lens lens,
+                 const TargetLens* start) {
+  TargetLens solved;
   int flags = cv::CALIB_USE_QR;
   if (start != nullptr) {
     flags |= cv::CALIB_USE_INTRINSIC_GUESS;
@@ -42,7 +44,7 @@ BoardLens solve(const BoardCorners& seen, const cv::Size& size, Lens lens, const
     if (lens == Lens::rational) flags |= cv::CALIB_RATIONAL_MODEL;
     if (lens == Lens::brown) solved.distortion = start->distortion.clone();
   }
-  cv::calibrateCamera(seen.boards, seen.corners, size, solved.matrix, solved.distortion,
+  cv::calibrateCamera(seen.target_points_m, seen.corners, size, solved.matrix, solved.distortion,
                       solved.rotations, solved.translations, flags);
   solved.model = model_of(solved.matrix, solved.distortion, size, lens);
   return solved;
@@ -84,12 +86,12 @@ std::array<float, 2> thirds_of(const std::vector<std::vector<cv::Point2f>>& seen
 
 }  // namespace
 
-BoardLens solve_lens(const BoardCorners& seen, const cv::Size& size, Lens lens) {
-  const BoardLens plain = solve(seen, size, Lens::brown, nullptr);
+TargetLens solve_lens(const TargetCorners& seen, const cv::Size& size, Lens lens) {
+  const TargetLens plain = solve(seen, size, Lens::brown, nullptr);
   return lens == Lens::rational ? solve(seen, size, lens, &plain) : plain;
 }
 
-LensSigmas lens_sigmas(const BoardCorners& seen, const cv::Size& size, const BoardLens& all) {
+LensSigmas lens_sigmas(const TargetCorners& seen, const cv::Size& size, const TargetLens& all) {
   const std::array<float, 2> right = thirds_of(seen.corners, &cv::Point2f::x),
                              down = thirds_of(seen.corners, &cv::Point2f::y);
   const auto third = [](float value, const std::array<float, 2>& ends) {
@@ -97,8 +99,8 @@ LensSigmas lens_sigmas(const BoardCorners& seen, const cv::Size& size, const Boa
   };
   std::vector<Vector3> found;
   Vector3 mean = Vector3::Zero();
-  for (int part = 0; part < k_board_parts; ++part) {
-    BoardCorners rest;
+  for (int part = 0; part < k_jackknife_parts; ++part) {
+    TargetCorners rest;
     for (std::size_t i = 0; i < seen.corners.size(); ++i) {
       std::vector<cv::Point2f> corners;
       std::vector<cv::Point3f> board;
@@ -106,20 +108,20 @@ LensSigmas lens_sigmas(const BoardCorners& seen, const cv::Size& size, const Boa
         const cv::Point2f& corner = seen.corners[i][k];
         if (3 * third(corner.y, down) + third(corner.x, right) == part) continue;
         corners.push_back(corner);
-        board.push_back(seen.boards[i][k]);
+        board.push_back(seen.target_points_m[i][k]);
       }
-      if (k_corners_left * corners.size() < seen.corners[i].size()) continue;
+      if (k_corner_share_inverse * corners.size() < seen.corners[i].size()) continue;
       rest.corners.push_back(std::move(corners));
-      rest.boards.push_back(std::move(board));
+      rest.target_points_m.push_back(std::move(board));
     }
     // Compares only at the remaining corners: outside them the lens is extrapolated.
-    const BoardLens other = solve(rest, size, all.model.lens, &all);
+    const TargetLens other = solve(rest, size, all.model.lens, &all);
     found.push_back(difference(all.model, other.model, rest.corners));
-    mean += found.back() / double{k_board_parts};
+    mean += found.back() / double{k_jackknife_parts};
   }
   Vector3 squares = Vector3::Zero();
   for (const Vector3& one : found) squares += (one - mean).cwiseAbs2();
-  squares *= double{k_board_parts - 1} / double{k_board_parts};
+  squares *= double{k_jackknife_parts - 1} / double{k_jackknife_parts};
   return {std::sqrt(0.5 * (squares[0] + squares[1])), std::sqrt(squares[2])};
 }
 

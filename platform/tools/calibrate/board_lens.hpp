@@ -9,18 +9,18 @@
 namespace glint {
 
 // For each image: detected corners, and their positions on the target, m.
-struct BoardCorners {
+struct TargetCorners {
   std::vector<std::vector<cv::Point2f>> corners;
-  std::vector<std::vector<cv::Point3f>> boards;
+  std::vector<std::vector<cv::Point3f>> target_points_m;
 };
 
-struct BoardLens {
+struct TargetLens {
   CameraModel model;           // field_tangent_max 0: no limit
   cv::Mat matrix, distortion;  // the same in OpenCV's form
   std::vector<cv::Mat> rotations, translations;
 };
 
-[[nodiscard]] BoardLens solve_lens(const BoardCorners& seen, const cv::Size& size, Lens lens);
+[[nodiscard]] TargetLens solve_lens(const TargetCorners& seen, const cv::Size& size, Lens lens);
 
 // Standard deviations of a common rotation of all rays (pixels per axis) and of a common scale of
 // all rays (ratio).
@@ -30,7 +30,7 @@ struct LensSigmas {
 
 // Jackknife over 3 x 3 parts of the image, each left out in turn. The model error of a lens is
 // correlated between nearby pixels, not between images. Source: Efron 1982, chapter 3.
-[[nodiscard]] LensSigmas lens_sigmas(const BoardCorners& seen, const cv::Size& size,
-                                     const BoardLens& all);
+[[nodiscard]] LensSigmas lens_sigmas(const TargetCorners& seen, const cv::Size& size,
+                                     const TargetLens& all);
 
 }  // namespace glint

@@ -7,17 +7,17 @@
 
 namespace glint {
 
-Vector3 bundle_miss(const Bundle& bundle, const LabelledPoint& point) {
+Vector3 bundle_residual(const Bundle& bundle, const LabelledPoint& point) {
   return bundle.poses[point.frame] * bundle.markers_m[point.marker] - point.measured_m;
 }
 
 double bundle_noise(const Bundle& bundle, std::span<const LabelledPoint> points) {
   double squares = 0;
-  for (const LabelledPoint& point : points) squares += bundle_miss(bundle, point).squaredNorm();
+  for (const LabelledPoint& point : points) squares += bundle_residual(bundle, point).squaredNorm();
   const double unknowns = 6.0 * static_cast<double>(bundle.poses.size()) +
                           3.0 * static_cast<double>(bundle.markers_m.size()) - 6.0;
-  const double freedom = 3.0 * static_cast<double>(points.size()) - unknowns;
-  return std::sqrt(squares / std::max(freedom, 1.0));
+  const double degrees_of_freedom = 3.0 * static_cast<double>(points.size()) - unknowns;
+  return std::sqrt(squares / std::max(degrees_of_freedom, 1.0));
 }
 
 std::vector<double> marker_sigmas(const Bundle& bundle, std::span<const LabelledPoint> points,
@@ -45,13 +45,13 @@ std::vector<double> marker_sigmas(const Bundle& bundle, std::span<const Labelled
     information -= taken.lazyProduct(mixed.transpose());
   }
   // The position and rotation of the tool frame are gauge freedoms: skips the six null directions.
-  const SymmetricEigen ways = symmetric_eigen(information);
+  const SymmetricEigen modes = symmetric_eigen(information);
   std::vector<double> sigmas;
   for (Eigen::Index at = 0; at < size; at += 3) {
     double variance = 0;
     for (Eigen::Index i = 6; i < size; ++i) {
       variance +=
-          ways.vectors.col(i).segment<3>(at).squaredNorm() / std::max(ways.values[i], 1e-12);
+          modes.vectors.col(i).segment<3>(at).squaredNorm() / std::max(modes.values[i], 1e-12);
     }
     sigmas.push_back(noise_m * std::sqrt(variance / 3));
   }

@@ -23,7 +23,7 @@ struct Bundle {
 [[nodiscard]] Bundle refined_bundle(Bundle start, std::span<const LabelledPoint> points,
                                     double sigma_m);
 
-[[nodiscard]] Vector3 bundle_miss(const Bundle& bundle, const LabelledPoint& point);
+[[nodiscard]] Vector3 bundle_residual(const Bundle& bundle, const LabelledPoint& point);
 
 // Noise of one component of a measured point, corrected for the degrees of freedom of the fit.
 [[nodiscard]] double bundle_noise(const Bundle& bundle, std::span<const LabelledPoint> points);

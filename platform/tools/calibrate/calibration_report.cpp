@@ -13,7 +13,7 @@ namespace {
 
 constexpr int k_table_digits = 5;
 constexpr int k_file_digits = 12;
-constexpr double k_spike_most = 1.3;  // of the largest kept value
+constexpr double k_spike_limit = 1.3;  // of the largest kept value
 
 std::string number(const Figures& value, int digits) {
   if (value.is_number_integer()) return std::to_string(value.get<std::int64_t>());
@@ -92,7 +92,7 @@ std::string residual_plot(const ResidualPlot& plot) {
       continue;
     }
     dropped.points.emplace_back(x, 0);
-    dropped.points.emplace_back(x, std::min(plot.values[i], k_spike_most * most));
+    dropped.points.emplace_back(x, std::min(plot.values[i], k_spike_limit * most));
     dropped.points.emplace_back(gap, gap);
   }
   std::vector<LineSeries> series{used};

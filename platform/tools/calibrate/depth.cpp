@@ -10,14 +10,14 @@
 namespace glint {
 namespace {
 
-constexpr double k_untold_sigma_px = 0.1;  // for a blob without a declared sigma
-constexpr double k_range_sigma_m = 0.003;  // for a blob without a declared sigma
-constexpr double k_range_sigma_min_m = 1e-6;
+constexpr double k_default_pixel_sigma_px = 0.1;  // for a blob without a declared sigma
+constexpr double k_range_sigma_m = 0.003;         // for a blob without a declared sigma
+constexpr double k_sample_sigma_min_m = 1e-6;
 constexpr double k_low = 0.05, k_high = 0.95;  // quantiles of the data
 constexpr int k_rounds = 4;
 // The bias has a valid interval of ranges but none of brightness: a tool may have 2000 counts,
 // whatever the data show.
-constexpr double k_dim_span_least = 0.5;
+constexpr double k_dim_span_min = 0.5;
 
 double quantile(std::vector<double> values, double part) {
   const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
@@ -25,7 +25,7 @@ double quantile(std::vector<double> values, double part) {
   return values[static_cast<std::size_t>(at)];
 }
 
-DepthSample sample_of(const SeenMarker& seen, const Tool& tool, Brightness brightness) {
+DepthSample sample_of(const ObservedMarker& seen, const Tool& tool, Brightness brightness) {
   DepthSample sample;
   const LocalRays& rays = seen.blob.rays;
   sample.marker_m = tool.markers_m[static_cast<std::size_t>(seen.marker)];
@@ -38,11 +38,13 @@ DepthSample sample_of(const SeenMarker& seen, const Tool& tool, Brightness brigh
   sample.surface_range_m = seen.blob.surface_range_m;
   sample.centre_behind_m = tool.centre_offset_m();
   if (brightness == Brightness::estimated)
-    sample.dimness = DepthBias::k_reference_counts / std::max(seen.blob.peak, 1.0);
-  const auto known = [](double sigma, double otherwise) { return sigma > 0 ? sigma : otherwise; };
-  sample.sigma_x_px = known(seen.blob.sigma_x_px, k_untold_sigma_px);
-  sample.sigma_y_px = known(seen.blob.sigma_y_px, k_untold_sigma_px);
-  sample.sigma_range_m = known(seen.blob.sigma_range_m, k_range_sigma_m);
+    sample.inverse_signal = DepthBias::k_reference_counts / std::max(seen.blob.peak, 1.0);
+  const auto or_default = [](double sigma, double otherwise) {
+    return sigma > 0 ? sigma : otherwise;
+  };
+  sample.sigma_x_px = or_default(seen.blob.sigma_x_px, k_default_pixel_sigma_px);
+  sample.sigma_y_px = or_default(seen.blob.sigma_y_px, k_default_pixel_sigma_px);
+  sample.sigma_range_m = or_default(seen.blob.sigma_range_m, k_range_sigma_m);
   return sample;
 }
 
@@ -65,24 +67,24 @@ void take_noise(std::vector<RangedFrame>& frames, const DepthFit& fit) {
     frame.samples[i].sigma_x_px *= pixel;
     frame.samples[i].sigma_y_px *= pixel;
     frame.samples[i].sigma_range_m =
-        std::max(frame.samples[i].sigma_range_m * range, k_range_sigma_min_m);
+        std::max(frame.samples[i].sigma_range_m * range, k_sample_sigma_min_m);
   });
 }
 
-void leave_out(std::vector<RangedFrame>& frames, const Vector3& bias, double sigmas) {
+void reject_outliers(std::vector<RangedFrame>& frames, const Vector3& bias, double sigmas) {
   for_each(frames, [&](RangedFrame& frame, std::size_t i) {
     frame.kept[i] = residual_of(frame, i, bias).cwiseAbs().maxCoeff() <= sigmas;
   });
 }
 
-struct Seen {
+struct Observations {
   std::vector<double> ranges_m, dimness, peaks;
 };
 
-Seen seen_in(std::span<const Sighting> sightings) {
-  Seen seen;
-  for (const Sighting& sighting : sightings) {
-    for (const SeenMarker& marker : sighting.markers) {
+Observations seen_in(std::span<const ToolObservation> observations) {
+  Observations seen;
+  for (const ToolObservation& observation : observations) {
+    for (const ObservedMarker& marker : observation.markers) {
       seen.ranges_m.push_back(marker.blob.surface_range_m);
       seen.peaks.push_back(std::max(marker.blob.peak, 1.0));
       seen.dimness.push_back(DepthBias::k_reference_counts / seen.peaks.back());
@@ -116,52 +118,55 @@ Matrix3 covariance_of_size(const Tool& tool) {
   return tool.marker_sigma_m * tool.marker_sigma_m / spread_m2 * per_size * per_size.transpose();
 }
 
-std::string say_counts(double counts) { return say("%.0f", counts); }
+std::string format_counts(double counts) { return format_number("%.0f", counts); }
 
 void check_span(const DepthCalibration& result, const DepthCalibrationSettings& settings,
                 const std::string& what) {
   const double span_m = result.range_to_m - result.range_from_m;
   if (span_m < settings.span_min_m) {
-    throw InputError(what + ": ranges from " + say_mm(result.range_from_m) + " to " +
-                     say_mm(result.range_to_m) + " only, so mm_per_m stays open; expected a span " +
-                     "of at least " + say_mm(settings.span_min_m) +
+    throw InputError(what + ": ranges from " + format_mm(result.range_from_m) + " to " +
+                     format_mm(result.range_to_m) +
+                     " only, so mm_per_m stays open; expected a span " + "of at least " +
+                     format_mm(settings.span_min_m) +
                      ": move the tool towards the camera and away, through all ranges of its use");
   }
   if (settings.brightness == Brightness::left_out) return;
   const double ratio = result.peak_to / result.peak_from;
   if (ratio < settings.dim_ratio_min) {
-    throw InputError(what + ": brightness from " + say_counts(result.peak_from) + " to " +
-                     say_counts(result.peak_to) + " counts only, so dim_mm stays open; expected " +
-                     "the brightest at least " + say("%.3g", settings.dim_ratio_min) +
+    throw InputError(what + ": brightness from " + format_counts(result.peak_from) + " to " +
+                     format_counts(result.peak_to) +
+                     " counts only, so dim_mm stays open; expected " + "the brightest at least " +
+                     format_number("%.3g", settings.dim_ratio_min) +
                      " times the dimmest: turn the markers away, show dim ones too, or say "
                      "--no-brightness");
   }
 }
 
 // Requires that the effect of each unknown over the data's span is below part_sigma_max_m.
-void check_certainty(const DepthCalibration& result, bool determined, double dim_span,
-                     const DepthCalibrationSettings& settings, const std::string& what) {
-  const double most = settings.part_sigma_max_m;
+void check_covariance(const DepthCalibration& result, bool determined, double dim_span,
+                      const DepthCalibrationSettings& settings, const std::string& what) {
+  const double sigma_max_m = settings.part_sigma_max_m;
   const auto sigma = [&](int i) { return std::sqrt(std::max(0.0, result.covariance(i, i))); };
   const double slope_m = sigma(1) * (result.range_to_m - result.range_from_m);
-  const double dim_m = sigma(2) * std::max(dim_span, k_dim_span_least);
+  const double dim_m = sigma(2) * std::max(dim_span, k_dim_span_min);
   const auto open = [&](const char* part, double value, const std::string& how) {
     throw InputError(what + ": " + part + " stays open: " +
-                     (determined ? "its part of a range is known to " + say_mm(value) + ", 1 sigma"
-                                 : std::string("the data do not tell it from the others")) +
-                     "; expected at most " + say_mm(most) + ": " + how);
+                     (determined
+                          ? "its part of a range is known to " + format_mm(value) + ", 1 sigma"
+                          : std::string("the data do not tell it from the others")) +
+                     "; expected at most " + format_mm(sigma_max_m) + ": " + how);
   };
-  if (settings.brightness == Brightness::estimated && (!determined || dim_m > most)) {
+  if (settings.brightness == Brightness::estimated && (!determined || dim_m > sigma_max_m)) {
     open("dim_mm", dim_m,
          std::abs(result.range_dim_correlation) > 0.9
              ? "brightness follows range (correlation " +
-                   say("%.2f", result.range_dim_correlation) +
+                   format_number("%.2f", result.range_dim_correlation) +
                    "): show dim markers near and bright ones far, or say --no-brightness"
              : "record for longer, or say --no-brightness");
   }
-  if (!determined || slope_m > most)
+  if (!determined || slope_m > sigma_max_m)
     open("mm_per_m", slope_m, "record for longer, through all ranges; turn the tool flat on");
-  if (sigma(0) > most) open("offset_mm", sigma(0), "record for longer, and nearer");
+  if (sigma(0) > sigma_max_m) open("offset_mm", sigma(0), "record for longer, and nearer");
 }
 
 void check_fit(const DepthCalibration& result, const DepthCalibrationSettings& settings,
@@ -172,26 +177,27 @@ void check_fit(const DepthCalibration& result, const DepthCalibrationSettings& s
     return;
   throw InputError(what + ": " + std::to_string(result.outliers) + " of " +
                    std::to_string(result.markers) + " markers do not fit, the others miss by " +
-                   say("%.2g px", result.pixel_sigma_px) + " and " + say_mm(result.range_sigma_m) +
-                   "; expected at most " + say("%.0f %%", 100 * (1 - settings.inliers_min)) + ", " +
-                   say("%.2g px", settings.pixel_sigma_max_px) + " and " +
-                   say_mm(settings.range_sigma_max_m) +
+                   format_number("%.2g px", result.pixel_sigma_px) + " and " +
+                   format_mm(result.range_sigma_m) + "; expected at most " +
+                   format_number("%.0f %%", 100 * (1 - settings.inliers_min)) + ", " +
+                   format_number("%.2g px", settings.pixel_sigma_max_px) + " and " +
+                   format_mm(settings.range_sigma_max_m) +
                    ": the tool's file and the camera's lens must be those of the recording");
 }
 
 }  // namespace
 
-DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool& tool,
+DepthCalibration calibrate_depth(std::span<const ToolObservation> observations, const Tool& tool,
                                  const DepthCalibrationSettings& settings,
                                  const std::string& what) {
-  if (sightings.size() < static_cast<std::size_t>(k_depth_frames_min)) {
+  if (observations.size() < static_cast<std::size_t>(k_depth_frames_min)) {
     throw InputError(what + ": the tool \"" + tool.name.data() + "\" in " +
-                     std::to_string(sightings.size()) + " frames; expected at least " +
+                     std::to_string(observations.size()) + " frames; expected at least " +
                      std::to_string(k_depth_frames_min) + " with 4 of its markers or more");
   }
   DepthCalibration result;
-  const Seen seen = seen_in(sightings);
-  result.frames = static_cast<int>(sightings.size());
+  const Observations seen = seen_in(observations);
+  result.frames = static_cast<int>(observations.size());
   result.markers = static_cast<int>(seen.ranges_m.size());
   result.range_from_m = quantile(seen.ranges_m, k_low);
   result.range_to_m = quantile(seen.ranges_m, k_high);
@@ -201,9 +207,9 @@ DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool
   check_span(result, settings, what);
 
   std::vector<RangedFrame> frames;
-  for (const Sighting& sighting : sightings) {
-    RangedFrame frame{sighting.pose.pose, {}, {}};
-    for (const SeenMarker& marker : sighting.markers)
+  for (const ToolObservation& observation : observations) {
+    RangedFrame frame{observation.pose.pose, {}, {}};
+    for (const ObservedMarker& marker : observation.markers)
       frame.samples.push_back(sample_of(marker, tool, settings.brightness));
     frame.kept.assign(frame.samples.size(), true);
     frames.push_back(std::move(frame));
@@ -214,7 +220,7 @@ DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool
                         round == 0 ? DepthLoss::cauchy : DepthLoss::none);
     if (round + 1 == k_rounds) break;
     take_noise(frames, fit);
-    leave_out(frames, fit.bias, settings.inlier_sigmas);
+    reject_outliers(frames, fit.bias, settings.inlier_sigmas);
   }
 
   double before = 0, after = 0, pixels = 0, ranges = 0;
@@ -222,7 +228,7 @@ DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool
     const DepthSample& sample = frame.samples[i];
     const double miss = residual_of(frame, i, fit.bias)[2] * sample.sigma_range_m;
     const double raw = residual_of(frame, i, Vector3::Zero())[2] * sample.sigma_range_m;
-    result.misses_m.push_back(std::abs(miss));
+    result.residuals_m.push_back(std::abs(miss));
     result.kept.push_back(frame.kept[i]);
     if (!frame.kept[i]) return;
     before += raw * raw;
@@ -238,10 +244,10 @@ DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool
   result.range_sigma_m = std::sqrt(ranges / n);
   result.bias = {fit.bias[0], fit.bias[1], fit.bias[2], result.range_from_m, result.range_to_m};
   result.covariance = fit.covariance;
-  result.correlated = fit.correlated;
+  result.variance_inflation = fit.variance_inflation;
   check_fit(result, settings, what);
   const double dim_span = quantile(seen.dimness, k_high) - quantile(seen.dimness, k_low);
-  check_certainty(result, fit.determined, dim_span, settings, what);
+  check_covariance(result, fit.determined, dim_span, settings, what);
   result.covariance += covariance_of_size(tool);
   return result;
 }

@@ -23,7 +23,7 @@ namespace glint {
 enum class Brightness { estimated, left_out };
 
 struct DepthCalibrationSettings {
-  Brightness brightness = Brightness::estimated;  // left_out: dim_m stays 0
+  Brightness brightness = Brightness::estimated;  // left_out: low_signal_m stays 0
   double span_min_m = 0.2;                        // of ranges, 5th to 95th percentile
   double dim_ratio_min = 2;                       // of peaks, 5th to 95th percentile
   double part_sigma_max_m = 0.001;                // effect of each unknown over the data's span
@@ -37,21 +37,21 @@ inline constexpr int k_depth_frames_min = 50;
 
 struct DepthCalibration {
   DepthBias bias;
-  Matrix3 covariance = Matrix3::Zero();          // of offset_m, per_metre, dim_m
+  Matrix3 covariance = Matrix3::Zero();          // of offset_m, per_metre, low_signal_m
   double range_dim_correlation = 0;              // between range and dimness of the data
   double pixel_sigma_px = 0, range_sigma_m = 0;  // estimated noise, rms over the markers
   double rms_before_m = 0, rms_after_m = 0;      // measured minus fitted range, of the kept markers
-  double correlated = 1;                         // variance inflation by autocorrelation
+  double variance_inflation = 1;                 // by autocorrelation
   double range_from_m = 0, range_to_m = 0;       // 5th to 95th percentile
   double peak_from = 0, peak_to = 0;
-  std::vector<double> misses_m;  // of each marker's range after bias correction
+  std::vector<double> residuals_m;  // of each marker's range after bias correction
   std::vector<bool> kept;
   int frames = 0, markers = 0, outliers = 0;
 };
 
 // Throws InputError, naming `what`, for too few frames, and for data that leave a part of the bias
 // undetermined (names the part and the data needed).
-[[nodiscard]] DepthCalibration calibrate_depth(std::span<const Sighting> sightings,
+[[nodiscard]] DepthCalibration calibrate_depth(std::span<const ToolObservation> observations,
                                                const Tool& tool,
                                                const DepthCalibrationSettings& settings,
                                                const std::string& what);

@@ -69,7 +69,8 @@ FrameRows rows_of(const RangedFrame& frame, const Vector3& bias) {
 // Eliminates the poses frame by frame (Schur complement). Separates the noise of pixels and ranges
 // by the redundancy of each residual within its frame.
 // Source: Foerstner and Wrobel 2016, Photogrammetric Computer Vision, eq. (4.99), (4.60).
-void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthFit& fit) {
+void estimate_covariance(const std::vector<RangedFrame>& frames, Brightness brightness,
+                         DepthFit& fit) {
   Matrix3 information = Matrix3::Zero();
   std::vector<Vector3> scores;
   double squares[2] = {0, 0}, redundancy[2] = {0, 0};  // of pixels, of ranges
@@ -96,8 +97,9 @@ void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthF
   if (!fit.determined) return;
   const Matrix3 root = inverse_root_of(scaled);
   for (Vector3& score : scores) score = root * (unit.asDiagonal() * score);
-  fit.correlated = correlation_factor(scores);
-  fit.covariance = fit.correlated * (unit.asDiagonal() * scaled.inverse() * unit.asDiagonal());
+  fit.variance_inflation = correlation_factor(scores);
+  fit.covariance =
+      fit.variance_inflation * (unit.asDiagonal() * scaled.inverse() * unit.asDiagonal());
   if (brightness == Brightness::left_out) {
     fit.covariance.row(2).setZero();
     fit.covariance.col(2).setZero();
@@ -149,7 +151,7 @@ DepthFit refined_depth(std::vector<RangedFrame>& frames, const Vector3& start,
   if (!summary.IsSolutionUsable()) return fit;
   fit.bias = bias;
   for (std::size_t f = 0; f < frames.size(); ++f) frames[f].T_camera_tool = pose_of(poses[f]);
-  judge(frames, brightness, fit);
+  estimate_covariance(frames, brightness, fit);
   return fit;
 }
 

@@ -19,12 +19,12 @@ struct RangedFrame {
 enum class DepthLoss { cauchy, none };
 
 struct DepthFit {
-  Vector3 bias = Vector3::Zero();  // offset_m, per_metre, dim_m
+  Vector3 bias = Vector3::Zero();  // offset_m, per_metre, low_signal_m
   Matrix3 covariance = Matrix3::Zero();
   bool determined = false;
   // Mean square of the residuals, in declared sigmas, divided by their redundancy.
   double pixel_variance = 1, range_variance = 1;
-  double correlated = 1;
+  double variance_inflation = 1;
 };
 
 // The frames' poses are the initial guess and receive the result.

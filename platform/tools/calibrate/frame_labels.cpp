@@ -9,7 +9,8 @@
 namespace glint {
 namespace {
 
-constexpr int k_beginnings_max = 6;  // alternative labelings of the first frame that are followed
+constexpr int k_initial_labelings_max =
+    6;  // alternative labelings of the first frame that are followed
 constexpr double k_linked_share = 0.6;  // of a frame's points
 constexpr double k_found_share = 0.95;  // of the largest marker count of any initial labeling
 
@@ -75,13 +76,13 @@ struct Score {
 
 Score score_of(const std::vector<Labeling>& labels) {
   Score score;
-  double squares = 0, freedom = 0;
+  double squares = 0, degrees_of_freedom = 0;
   for (const Labeling& label : labels) {
     score.markers += label.count;
     squares += label.count * label.rms_m * label.rms_m;
-    if (label.count > 0) freedom += 3.0 * label.count - 6;
+    if (label.count > 0) degrees_of_freedom += 3.0 * label.count - 6;
   }
-  if (freedom > 0) score.mean_square = squares / freedom;
+  if (degrees_of_freedom > 0) score.mean_square = squares / degrees_of_freedom;
   return score;
 }
 
@@ -99,16 +100,16 @@ std::vector<Segment> segments_of(std::span<const PointFrame> frames, double step
 std::vector<Labeling> label_segment(std::span<const PointFrame> frames, const Segment& segment,
                                     const Tool& tool, double noise_m) {
   Labeller labeller(frames, tool, noise_m);
-  std::vector<Labeling> beginnings;
+  std::vector<Labeling> initial_labelings;
   std::size_t begin = segment.begin;
-  for (; begin < segment.end && beginnings.empty(); ++begin) {
+  for (; begin < segment.end && initial_labelings.empty(); ++begin) {
     const Labelings& found = labeller.propose(begin, nullptr);
-    const int ways = std::min(found.count, k_beginnings_max);
-    beginnings.assign(found.items.begin(), found.items.begin() + ways);
+    const int ways = std::min(found.count, k_initial_labelings_max);
+    initial_labelings.assign(found.items.begin(), found.items.begin() + ways);
   }
   std::vector<Labeling> best(segment.length());
   Score best_score;
-  for (const Labeling& first : beginnings) {
+  for (const Labeling& first : initial_labelings) {
     std::vector<Labeling> labels = labeller.follow(segment, begin - 1, first);
     const Score score = score_of(labels);
     const bool as_many = score.markers >= k_found_share * best_score.markers;

@@ -11,10 +11,10 @@ namespace glint {
 
 HeadsetCalibration calibrate_headset(RecordedFrames& recorded, std::size_t tool) {
   recorded.cell.reference = static_cast<int>(tool);
-  const auto watch = std::make_unique<CalibrationWatch>(recorded.cell);
+  const auto watch = std::make_unique<CalibrationMonitor>(recorded.cell);
   TrackedFrames tracked =
       track_frames(recorded, Search::tracked,
-                   [&](const ArrivedFrame&, Tracker& tracker) { watch->see(tracker); });
+                   [&](const ArrivedFrame&, Tracker& tracker) { watch->add_frame(tracker); });
   HeadsetCalibration result;
   result.frames = tracked.frames;
   result.failures = std::move(tracked.failures);
@@ -31,11 +31,11 @@ HeadsetCalibration calibrate_headset(RecordedFrames& recorded, std::size_t tool)
                      " frames; expected both for 20 s or more: lay the tool down, look at it from "
                      "all sides");
   }
-  result.best = drift->estimate;
+  result.best_factor = drift->estimate;
   result.sigma = drift->sigma / drift->estimate;
-  result.factor = result.best * (1 + result.sigma);
+  result.factor = result.best_factor * (1 + result.sigma);
   if (time != findings.end()) {
-    result.head_late_s = time->estimate;
+    result.head_delay_s = time->estimate;
     result.head_late_sigma_s = time->sigma;
   }
   result.noise = recorded.cell.head_noise;

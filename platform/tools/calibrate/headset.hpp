@@ -13,11 +13,11 @@
 namespace glint {
 
 struct HeadsetCalibration {
-  HeadNoise noise;         // the declared noise times `factor`
-  double factor = 1;       // best * (1 + sigma)
-  double best = 1;         // best fit, in units of the declared deviations
-  double sigma = 0;        // relative standard deviation of `best`
-  double head_late_s = 0;  // delay of the head poses behind the frames; not corrected
+  HeadNoise noise;          // the declared noise times `factor`
+  double factor = 1;        // best_factor * (1 + sigma)
+  double best_factor = 1;   // best fit, in units of the declared deviations
+  double sigma = 0;         // relative standard deviation of `best_factor`
+  double head_delay_s = 0;  // delay of the head poses behind the frames; not corrected
   double head_late_sigma_s = 0;
   int frames = 0;
   std::vector<std::string> failures;  // read errors of the frames, a line each

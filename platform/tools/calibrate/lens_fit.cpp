@@ -21,13 +21,13 @@ constexpr double k_pinhole_tangent = 0.36;  // 20 degrees: limit of the pinhole 
 
 using Lens12 = std::array<double, k_lens_numbers>;
 
-struct SeenRay {
+struct RaySample {
   Vector2 plane;  // on z = 1
   Vector2 pixel;
 };
 
 struct LensCost {
-  SeenRay ray;
+  RaySample ray;
 
   template <class Scalar>
   bool operator()(const Scalar* lens, Scalar* residual) const {
@@ -40,7 +40,7 @@ struct LensCost {
 
 struct Grid {
   int width = 0, height = 0;
-  std::vector<SeenRay> rays;
+  std::vector<RaySample> rays;
 };
 
 Grid grid_of(const std::string& path, int width) {
@@ -78,11 +78,11 @@ Grid grid_of(const std::string& path, int width) {
 }
 
 // Pinhole parameters by linear regression of pixel on ray slope, over the rays near the axis.
-Lens12 pinhole(const std::vector<SeenRay>& rays) {
+Lens12 pinhole(const std::vector<RaySample>& rays) {
   Eigen::Vector2d slope, middle;
   for (int axis = 0; axis < 2; ++axis) {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const SeenRay& ray : rays) {
+    for (const RaySample& ray : rays) {
       if (ray.plane.norm() > k_pinhole_tangent) continue;
       const double a = ray.plane[axis], b = ray.pixel[axis];
       n += 1;
@@ -97,7 +97,7 @@ Lens12 pinhole(const std::vector<SeenRay>& rays) {
   return {slope.x(), slope.y(), middle.x(), middle.y(), 0, 0, 0, 0, 0, 0, 0, 0};
 }
 
-Lens12 fitted(const std::vector<SeenRay>& rays, Lens12 lens) {
+Lens12 fitted(const std::vector<RaySample>& rays, Lens12 lens) {
   ceres::Problem problem;
   const std::size_t step = rays.size() / k_fitted_max + 1;
   for (std::size_t i = 0; i < rays.size(); i += step) {
@@ -137,7 +137,7 @@ LensFit fit_lens_to_table(const std::string& npy_path, int width) {
   std::copy(lens.begin() + 4, lens.end(), fit.model.distortion.begin());
   std::vector<double> squares(90, 0), counts(90, 0);
   double sum = 0;
-  for (const SeenRay& ray : grid.rays) {
+  for (const RaySample& ray : grid.rays) {
     const Vector2 miss = lens_residual<double>(ray.plane, ray.pixel, lens.data());
     const double tangent = ray.plane.norm();
     fit.model.field_tangent_max = std::max(fit.model.field_tangent_max, tangent);
@@ -145,7 +145,7 @@ LensFit fit_lens_to_table(const std::string& npy_path, int width) {
     squares[degree] += miss.squaredNorm();
     ++counts[degree];
     sum += miss.squaredNorm();
-    fit.most_px = std::max(fit.most_px, miss.norm());
+    fit.error_max_px = std::max(fit.error_max_px, miss.norm());
   }
   fit.pixels = static_cast<int>(grid.rays.size());
   fit.rms_px = std::sqrt(sum / (2.0 * fit.pixels));

@@ -10,8 +10,8 @@ namespace glint {
 
 struct LensFit {
   CameraModel model;
-  double rms_px = 0;   // per axis, over all pixels with a ray
-  double most_px = 0;  // largest |error|
+  double rms_px = 0;        // per axis, over all pixels with a ray
+  double error_max_px = 0;  // largest |error|
   int pixels = 0;
   std::vector<double> error_by_angle_px;  // rms of |error| in each degree off the axis
 };

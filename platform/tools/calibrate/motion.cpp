@@ -13,23 +13,23 @@
 namespace glint {
 namespace {
 
-constexpr double k_early = 0.9;  // minimum spacing of kept samples, in periods
+constexpr double k_spacing_min = 0.9;  // minimum spacing of kept samples, in periods
 constexpr double k_fit_part = 2.0 / 3;
-constexpr double k_hardly_part = 1e-3;
-constexpr double k_still_part = 1e-4;               // of the initial noise: nearly static
+constexpr double k_slow_noise_factor = 1e-3;
+constexpr double k_static_noise_factor = 1e-4;      // of the initial noise: nearly static
 constexpr Duration k_warm_up = milliseconds(1000);  // of the predictor; not evaluated
 constexpr Duration k_truth_gap_max = milliseconds(100);
 
-std::vector<StampedPose> thinned(const Trajectory& recording, double rate_hz) {
-  std::vector<StampedPose> samples;
-  for (const StampedPose& sample : recording.samples) {
-    if (samples.empty() || (sample.time - samples.back().time).seconds() * rate_hz >= k_early)
+std::vector<TimedPose> subsampled(const Trajectory& recording, double rate_hz) {
+  std::vector<TimedPose> samples;
+  for (const TimedPose& sample : recording.samples) {
+    if (samples.empty() || (sample.time - samples.back().time).seconds() * rate_hz >= k_spacing_min)
       samples.push_back(sample);
   }
   return samples;
 }
 
-void add_noise(std::vector<StampedPose>& samples, const MeasuredNoise& noise, std::uint64_t seed,
+void add_noise(std::vector<TimedPose>& samples, const MeasuredNoise& noise, std::uint64_t seed,
                std::uint64_t recording) {
   const sim::RandomKey shift{seed, sim::Stream::blob, 2 * recording};
   const sim::RandomKey turn{seed, sim::Stream::blob, 2 * recording + 1};
@@ -47,20 +47,21 @@ bool recorded_near(const Trajectory& truth, Time time) {
   const auto& samples = truth.samples;
   const auto after =
       std::lower_bound(samples.begin(), samples.end(), time,
-                       [](const StampedPose& sample, Time t) { return sample.time < t; });
+                       [](const TimedPose& sample, Time t) { return sample.time < t; });
   if (after == samples.begin() || after == samples.end()) return false;
   return after->time - (after - 1)->time <= k_truth_gap_max;
 }
 
 // Sums of squared prediction errors over one recording's held-out part.
-class PredictionJudge {
+class PredictionErrors {
  public:
-  PredictionJudge(const Trajectory& truth, const MotionSettings& motion, const MeasuredNoise& noise)
+  PredictionErrors(const Trajectory& truth, const MotionSettings& motion,
+                   const MeasuredNoise& noise)
       : truth_(truth), noise_(noise) {
     motion_.settings.motion = motion;
   }
 
-  void take(const StampedPose& measured, HeldOut& out, std::vector<double>* misses_m) {
+  void take(const TimedPose& measured, HeldOut& out, std::vector<double>* errors_m) {
     UncertainPose pose{measured.time, measured.pose, Matrix6::Zero()};
     const double p = noise_.position_sigma_m * noise_.position_sigma_m;
     const double r = noise_.rotation_sigma_rad * noise_.rotation_sigma_rad;
@@ -70,7 +71,7 @@ class PredictionJudge {
     last_ = measured.time;
     if (motion_.update(pose) != Reason::none || measured.time < from_) return;
     const double miss = add(measured.time + milliseconds(25), out.at_25_ms);
-    if (misses_m != nullptr && miss >= 0) misses_m->push_back(miss);
+    if (errors_m != nullptr && miss >= 0) errors_m->push_back(miss);
     (void)add(measured.time + milliseconds(50), out.at_50_ms);
   }
 
@@ -79,12 +80,12 @@ class PredictionJudge {
   double add(Time time, MotionError& error) {
     if (!recorded_near(truth_, time)) return -1;
     const Pose truth = interpolated(truth_, time);
-    const Pose said =
+    const Pose predicted =
         predict_pose(motion_.estimate(), time, motion_.settings.motion, motion_.noise_scale()).pose;
-    const double miss = (said.translation - truth.translation).norm();
+    const double miss = (predicted.translation - truth.translation).norm();
     error.position_rms_m += miss * miss;
     error.rotation_rms_rad +=
-        rotation_vector(said.rotation * truth.rotation.conjugate()).squaredNorm();
+        rotation_vector(predicted.rotation * truth.rotation.conjugate()).squaredNorm();
     ++error.n;
     return miss;
   }
@@ -102,13 +103,13 @@ MotionUnknowns unknowns_of(const MotionSettings& motion, MotionPart part) {
              : MotionUnknowns{motion.angular_noise_rad2_s5, motion.angular_damping_1_s};
 }
 
-HeldOut judged(std::span<const Trajectory> recordings, const MotionSeries& held_out,
-               const MotionSettings& motion, const LikelihoodSettings& likelihood,
-               std::vector<double>* misses_m) {
+HeldOut held_out_errors(std::span<const Trajectory> recordings, const MotionSeries& held_out,
+                        const MotionSettings& motion, const LikelihoodSettings& likelihood,
+                        std::vector<double>* errors_m) {
   HeldOut out;
   for (std::size_t i = 0; i < held_out.size(); ++i) {
-    PredictionJudge judge(recordings[i], motion, likelihood.noise);
-    for (const StampedPose& sample : held_out[i]) judge.take(sample, out, misses_m);
+    PredictionErrors judge(recordings[i], motion, likelihood.noise);
+    for (const TimedPose& sample : held_out[i]) judge.take(sample, out, errors_m);
   }
   for (MotionError* error : {&out.at_25_ms, &out.at_50_ms}) {
     error->position_rms_m = std::sqrt(error->position_rms_m / std::max(error->n, 1));
@@ -132,12 +133,12 @@ const char* name_of(MotionPart part) { return part == MotionPart::shift ? "shift
 }
 
 // Returns whether a nearly static tool is as likely, or a still slower one likelier.
-bool rests(const MotionSeries& series, MotionPart part, const MotionUnknowns& start,
-           const LikelihoodSettings& likelihood, double gain_min) {
+bool is_static(const MotionSeries& series, MotionPart part, const MotionUnknowns& start,
+               const LikelihoodSettings& likelihood, double gain_min) {
   const Likelihood still =
-      likelihood_of(series, part, {k_still_part * start.noise, start.damping}, likelihood);
+      likelihood_of(series, part, {k_static_noise_factor * start.noise, start.damping}, likelihood);
   const Likelihood moving =
-      likelihood_of(series, part, {k_hardly_part * start.noise, start.damping}, likelihood);
+      likelihood_of(series, part, {k_slow_noise_factor * start.noise, start.damping}, likelihood);
   return still.gradient[0] < 0 || moving.log_likelihood < still.log_likelihood + gain_min;
 }
 
@@ -145,10 +146,10 @@ MotionFit fitted(const MotionSeries& series, MotionPart part,
                  const MotionCalibrationSettings& settings, const LikelihoodSettings& likelihood,
                  const std::function<void()>& evaluated, const std::string& what) {
   const MotionUnknowns start = unknowns_of(settings.start, part);
-  if (rests(series, part, start, likelihood, settings.motion_gain_min)) {
+  if (is_static(series, part, start, likelihood, settings.motion_gain_min)) {
     refuse(what, part, "noise and damping open", "it to stand out of the declared noise");
   }
-  const MotionFit fit = most_likely(series, part, start, likelihood, evaluated);
+  const MotionFit fit = maximise_likelihood(series, part, start, likelihood, evaluated);
   if (!fit.determined) {
     refuse(what, part, "noise and damping open", "a likelihood that has a maximum");
   }
@@ -156,8 +157,8 @@ MotionFit fitted(const MotionSeries& series, MotionPart part,
   if (worst > settings.log_sigma_max) {
     refuse(what, part,
            std::string(fit.covariance(0, 0) > fit.covariance(1, 1) ? "noise" : "damping") +
-               " open, " + say("%.2g", worst) + " of its logarithm, 1 sigma",
-           "at most " + say("%.2g", settings.log_sigma_max));
+               " open, " + format_number("%.2g", worst) + " of its logarithm, 1 sigma",
+           "at most " + format_number("%.2g", settings.log_sigma_max));
   }
   return fit;
 }
@@ -170,7 +171,7 @@ MotionCalibration calibrate_motion(std::span<const Trajectory> recordings,
   MotionCalibration result;
   MotionSeries fit_on, held_out;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    std::vector<StampedPose> samples = thinned(recordings[i], settings.rate_hz);
+    std::vector<TimedPose> samples = subsampled(recordings[i], settings.rate_hz);
     if (settings.added == AddedNoise::declared)
       add_noise(samples, settings.noise, settings.seed, i);
     const auto split = samples.begin() + static_cast<std::ptrdiff_t>(
@@ -182,7 +183,7 @@ MotionCalibration calibrate_motion(std::span<const Trajectory> recordings,
   }
   if (result.samples < k_motion_samples_min) {
     throw InputError(what + ": " + std::to_string(result.samples + result.held_out) + " poses at " +
-                     say("%.3g Hz", settings.rate_hz) + "; expected at least " +
+                     format_number("%.3g Hz", settings.rate_hz) + "; expected at least " +
                      std::to_string(k_motion_samples_min * 3 / 2) +
                      ", of which a third is held out: record for longer");
   }
@@ -199,10 +200,10 @@ MotionCalibration calibrate_motion(std::span<const Trajectory> recordings,
   result.motion.linear_damping_1_s = shift.unknowns.damping;
   result.motion.angular_noise_rad2_s5 = rotation.unknowns.noise;
   result.motion.angular_damping_1_s = rotation.unknowns.damping;
-  result.shift_covariance = shift.covariance;
+  result.translation_covariance = shift.covariance;
   result.rotation_covariance = rotation.covariance;
-  result.found = judged(recordings, held_out, result.motion, likelihood, &result.misses_m);
-  result.built_in = judged(recordings, held_out, settings.start, likelihood, nullptr);
+  result.found = held_out_errors(recordings, held_out, result.motion, likelihood, &result.errors_m);
+  result.built_in = held_out_errors(recordings, held_out, settings.start, likelihood, nullptr);
   return result;
 }
 

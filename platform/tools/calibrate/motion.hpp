@@ -47,10 +47,10 @@ struct HeldOut {
 struct MotionCalibration {
   MotionSettings motion;
   // Covariances of (ln noise, ln damping).
-  Eigen::Matrix2d shift_covariance = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d translation_covariance = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d rotation_covariance = Eigen::Matrix2d::Zero();
   HeldOut found, built_in;
-  std::vector<double> misses_m;  // prediction error 25 ms ahead, on the held-out part
+  std::vector<double> errors_m;  // prediction error 25 ms ahead, on the held-out part
   int samples = 0, held_out = 0;
 };
 

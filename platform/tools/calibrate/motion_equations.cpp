@@ -68,7 +68,7 @@ Vector9 mean_rate(const Vector9& mean, double damping) {
 }
 
 // F P with the F of the header; `turn`: [angular speed]x, zero for a translation.
-Matrix9 carried(const Matrix9& p, double damping, const Matrix3& turn) {
+Matrix9 mean_covariance_rate(const Matrix9& p, double damping, const Matrix3& turn) {
   Matrix9 rate;
   rate.topRows<3>() = p.middleRows<3>(3);
   rate.topRows<3>().noalias() += turn * p.topRows<3>();
@@ -85,7 +85,8 @@ int rates(realtype, N_Vector at, N_Vector out, void* user) {
   const auto& problem = *static_cast<const Problem*>(user);
   const Vector9 mean = ConstMean(data_of(at));
   const double damping = problem.unknowns.damping;
-  const Matrix9 half = carried(unpacked(problem.part, at), damping, turn_of(problem.part, mean));
+  const Matrix9 half =
+      mean_covariance_rate(unpacked(problem.part, at), damping, turn_of(problem.part, mean));
   Matrix9 covariance = half + half.transpose();
   covariance.diagonal().tail<3>().array() += problem.unknowns.noise;
   Mean(data_of(out)) = mean_rate(mean, damping);
@@ -104,7 +105,7 @@ int sensitive_rates(int, realtype, N_Vector at, N_Vector, N_Vector* s, N_Vector*
   for (int i = 0; i < k_motion_unknowns; ++i) {
     const Vector9 mean_s = ConstMean(data_of(s[i]));
     Vector9 mean_out = mean_rate(mean_s, damping);
-    Matrix9 half = carried(unpacked(problem.part, s[i]), damping, turn);
+    Matrix9 half = mean_covariance_rate(unpacked(problem.part, s[i]), damping, turn);
     half.topRows<3>() += turn_of(problem.part, mean_s) * p.topRows<3>();
     if (i == 1) {  // by ln damping
       mean_out.tail<3>() -= damping * mean.tail<3>();
@@ -126,8 +127,9 @@ struct MotionEquations::Body {
   N_Vector state = nullptr, tolerance = nullptr;
   N_Vector* sensitivities = nullptr;
   void* memory = nullptr;
-  SUNNonlinearSolver alone = nullptr;  // solver of the state alone: CVODES requires it; unused
-  SUNNonlinearSolver together = nullptr;
+  SUNNonlinearSolver state_solver =
+      nullptr;  // solver of the state alone: CVODES requires it; unused
+  SUNNonlinearSolver sensitivity_solver = nullptr;
 
   explicit Body(MotionPart part) : problem{part, {}} {
     if (SUNContext_Create(nullptr, &context) != 0) return;
@@ -135,12 +137,12 @@ struct MotionEquations::Body {
     tolerance = N_VClone(state);
     sensitivities = N_VCloneVectorArray(k_motion_unknowns, state);
     memory = CVodeCreate(CV_ADAMS, context);
-    alone = SUNNonlinSol_FixedPoint(state, 0, context);
-    together = SUNNonlinSol_FixedPointSens(k_motion_unknowns + 1, state, 0, context);
+    state_solver = SUNNonlinSol_FixedPoint(state, 0, context);
+    sensitivity_solver = SUNNonlinSol_FixedPointSens(k_motion_unknowns + 1, state, 0, context);
   }
   ~Body() {
     if (memory != nullptr) CVodeFree(&memory);
-    for (SUNNonlinearSolver solver : {alone, together})
+    for (SUNNonlinearSolver solver : {state_solver, sensitivity_solver})
       if (solver != nullptr) SUNNonlinSolFree(solver);
     if (sensitivities != nullptr) N_VDestroyVectorArray(sensitivities, k_motion_unknowns);
     for (N_Vector vector : {state, tolerance})
@@ -151,7 +153,8 @@ struct MotionEquations::Body {
   Body& operator=(const Body&) = delete;
 
   [[nodiscard]] bool prepared() {
-    if (memory == nullptr || alone == nullptr || together == nullptr || sensitivities == nullptr)
+    if (memory == nullptr || state_solver == nullptr || sensitivity_solver == nullptr ||
+        sensitivities == nullptr)
       return false;
     N_VConst(0, state);
     for (int i = 0; i < k_motion_unknowns; ++i) N_VConst(0, sensitivities[i]);
@@ -161,8 +164,8 @@ struct MotionEquations::Body {
            CVodeSensInit(memory, k_motion_unknowns, CV_SIMULTANEOUS, sensitive_rates,
                          sensitivities) == CV_SUCCESS &&
            CVodeSetSensErrCon(memory, SUNTRUE) == CV_SUCCESS &&
-           CVodeSetNonlinearSolver(memory, alone) == CV_SUCCESS &&
-           CVodeSetNonlinearSolverSensSim(memory, together) == CV_SUCCESS &&
+           CVodeSetNonlinearSolver(memory, state_solver) == CV_SUCCESS &&
+           CVodeSetNonlinearSolverSensSim(memory, sensitivity_solver) == CV_SUCCESS &&
            CVodeSetErrFile(memory, nullptr) == CV_SUCCESS;
   }
 
@@ -183,8 +186,8 @@ MotionEquations::MotionEquations(MotionPart part) : body_(std::make_unique<Body>
 
 MotionEquations::~MotionEquations() = default;
 
-bool MotionEquations::carry(SensitiveMoments& moments, double seconds,
-                            const MotionUnknowns& unknowns) {
+bool MotionEquations::propagate(SensitiveMoments& moments, double seconds,
+                                const MotionUnknowns& unknowns) {
   Body& body = *body_;
   body.problem.unknowns = unknowns;
   write(body.problem.part, moments.value, body.state);

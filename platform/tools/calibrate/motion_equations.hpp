@@ -49,8 +49,8 @@ class MotionEquations {
   MotionEquations& operator=(const MotionEquations&) = delete;
 
   // Propagates the moments by `seconds`. Returns false if the integration fails (extreme unknowns).
-  [[nodiscard]] bool carry(SensitiveMoments& moments, double seconds,
-                           const MotionUnknowns& unknowns);
+  [[nodiscard]] bool propagate(SensitiveMoments& moments, double seconds,
+                               const MotionUnknowns& unknowns);
 
  private:
   struct Body;

@@ -10,7 +10,8 @@ namespace glint {
 namespace {
 
 constexpr int k_motion_iterations_max = 60;
-constexpr double k_log_most = 9.2;     // of either unknown from the initial guess: a factor of 10^4
+constexpr double k_log_step_max =
+    9.2;                               // of either unknown from the initial guess: a factor of 10^4
 constexpr double k_difference = 0.05;  // step in a logarithm for the likelihood's curvature
 // Prior of the damping: 1 sigma of its logarithm around the initial guess. If the motion decays
 // faster than the sample period, noise and damping are not separable.
@@ -30,8 +31,8 @@ class Cost final : public ceres::FirstOrderFunction {
   [[nodiscard]] int NumParameters() const override { return k_motion_unknowns; }
 
   bool Evaluate(const double* logs, double* cost, double* gradient) const override {
-    if (std::abs(logs[0] - std::log(start_.noise)) > k_log_most ||
-        std::abs(logs[1] - std::log(start_.damping)) > k_log_most)
+    if (std::abs(logs[0] - std::log(start_.noise)) > k_log_step_max ||
+        std::abs(logs[1] - std::log(start_.damping)) > k_log_step_max)
       return false;
     const Likelihood found = likelihood_of(series_, part_, unknowns_at(logs), settings_);
     if (evaluated_) evaluated_();
@@ -57,8 +58,8 @@ class Cost final : public ceres::FirstOrderFunction {
 // is misspecified for a real hand.
 // Source: White 1982, "Maximum likelihood estimation of misspecified models", Econometrica 50(1),
 // theorem 3.2.
-void judge(const MotionSeries& series, MotionPart part, const LikelihoodSettings& settings,
-           const double* logs, MotionFit& fit) {
+void estimate_covariance(const MotionSeries& series, MotionPart part,
+                         const LikelihoodSettings& settings, const double* logs, MotionFit& fit) {
   Eigen::Matrix2d curvature;
   for (int i = 0; i < k_motion_unknowns; ++i) {
     double above[2] = {logs[0], logs[1]}, below[2] = {logs[0], logs[1]};
@@ -91,9 +92,9 @@ void judge(const MotionSeries& series, MotionPart part, const LikelihoodSettings
 Likelihood likelihood_of(const MotionSeries& series, MotionPart part,
                          const MotionUnknowns& unknowns, const LikelihoodSettings& settings) {
   Likelihood all;
-  for (const std::vector<StampedPose>& one : series) {
+  for (const std::vector<TimedPose>& one : series) {
     const Likelihood found =
-        likelihood_of(std::span<const StampedPose>(one), part, unknowns, settings);
+        likelihood_of(std::span<const TimedPose>(one), part, unknowns, settings);
     all.log_likelihood += found.log_likelihood;
     all.gradient += found.gradient;
     all.scores.insert(all.scores.end(), found.scores.begin(), found.scores.end());
@@ -103,8 +104,9 @@ Likelihood likelihood_of(const MotionSeries& series, MotionPart part,
   return all;
 }
 
-MotionFit most_likely(const MotionSeries& series, MotionPart part, const MotionUnknowns& start,
-                      const LikelihoodSettings& settings, const std::function<void()>& evaluated) {
+MotionFit maximise_likelihood(const MotionSeries& series, MotionPart part,
+                              const MotionUnknowns& start, const LikelihoodSettings& settings,
+                              const std::function<void()>& evaluated) {
   double logs[k_motion_unknowns] = {std::log(start.noise), std::log(start.damping)};
   const ceres::GradientProblem problem(new Cost(series, part, start, settings, evaluated));
   ceres::GradientProblemSolver::Options options;
@@ -118,7 +120,7 @@ MotionFit most_likely(const MotionSeries& series, MotionPart part, const MotionU
   MotionFit fit;
   if (!summary.IsSolutionUsable()) return fit;
   fit.unknowns = unknowns_at(logs);
-  judge(series, part, settings, logs, fit);
+  estimate_covariance(series, part, settings, logs, fit);
   return fit;
 }
 

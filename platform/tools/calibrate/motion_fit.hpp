@@ -18,7 +18,7 @@ struct MotionFit {
   double log_likelihood = 0;
 };
 
-using MotionSeries = std::vector<std::vector<StampedPose>>;
+using MotionSeries = std::vector<std::vector<TimedPose>>;
 
 // Sums the likelihood over several series.
 [[nodiscard]] Likelihood likelihood_of(const MotionSeries& series, MotionPart part,
@@ -26,8 +26,9 @@ using MotionSeries = std::vector<std::vector<StampedPose>>;
                                        const LikelihoodSettings& settings);
 
 // Maximises the likelihood. Calls `evaluated`, which may be empty, after each evaluation.
-[[nodiscard]] MotionFit most_likely(const MotionSeries& series, MotionPart part,
-                                    const MotionUnknowns& start, const LikelihoodSettings& settings,
-                                    const std::function<void()>& evaluated);
+[[nodiscard]] MotionFit maximise_likelihood(const MotionSeries& series, MotionPart part,
+                                            const MotionUnknowns& start,
+                                            const LikelihoodSettings& settings,
+                                            const std::function<void()>& evaluated);
 
 }  // namespace glint

@@ -25,25 +25,25 @@ Matrix3 inverse_right_jacobian(const Vector3& v) { return left_jacobian(v).trans
 Matrix3 exponential_of(const Vector3& v) { return from_rotation_vector(v).toRotationMatrix(); }
 
 // Kalman filter with derivatives. For a rotation the mean's rotation vector is zero after each
-// correction; rotation_ holds the rotation and turned_by_ its derivatives by the unknowns.
+// correction; rotation_ holds the rotation and rotation_by_ its derivatives by the unknowns.
 class SensitiveFilter {
  public:
   SensitiveFilter(MotionPart part, const MotionUnknowns& unknowns,
                   const LikelihoodSettings& settings)
       : part_(part), unknowns_(unknowns), settings_(settings), equations_(part) {
     const double sigma =
-        turns() ? settings.noise.rotation_sigma_rad : settings.noise.position_sigma_m;
+        is_rotation() ? settings.noise.rotation_sigma_rad : settings.noise.position_sigma_m;
     variance_ = sigma * sigma;
   }
 
   void start(const Pose& pose) {
     state_ = {};
     rotation_ = pose.rotation;
-    turned_by_.fill(Vector3::Zero());
-    if (!turns()) state_.value.mean.head<3>() = pose.translation;
+    rotation_by_.fill(Vector3::Zero());
+    if (!is_rotation()) state_.value.mean.head<3>() = pose.translation;
     const double speed =
-        turns() ? settings_.start.start_turn_rad_s : settings_.start.start_speed_m_s;
-    // Stationary variance of a damped acceleration, as in start_motion().
+        is_rotation() ? settings_.start.start_angular_speed_rad_s : settings_.start.start_speed_m_s;
+    // Stationary variance of a damped acceleration, as in initial_motion_state().
     const double acceleration = unknowns_.noise / (2 * unknowns_.damping);
     state_.value.covariance.diagonal() << Vector3::Constant(variance_),
         Vector3::Constant(speed * speed), Vector3::Constant(acceleration);
@@ -51,23 +51,23 @@ class SensitiveFilter {
     state_.by[1].covariance.diagonal().tail<3>().setConstant(-acceleration);
   }
 
-  [[nodiscard]] bool carry(double seconds) {
-    if (turns()) {
+  [[nodiscard]] bool propagate(double seconds) {
+    if (is_rotation()) {
       state_.value.mean.head<3>().setZero();
       for (Moments& by : state_.by) by.mean.head<3>().setZero();
     }
-    if (!equations_.carry(state_, seconds, unknowns_)) return false;
-    if (!turns()) return true;
+    if (!equations_.propagate(state_, seconds, unknowns_)) return false;
+    if (!is_rotation()) return true;
     const Vector3 turn = state_.value.mean.head<3>();
     const Matrix3 rotated = exponential_of(turn), jacobian = left_jacobian(turn);
     rotation_ = (from_rotation_vector(turn) * rotation_).normalized();
-    for (std::size_t i = 0; i < turned_by_.size(); ++i)
-      turned_by_[i] = rotated * turned_by_[i] + jacobian * state_.by[i].mean.head<3>();
+    for (std::size_t i = 0; i < rotation_by_.size(); ++i)
+      rotation_by_[i] = rotated * rotation_by_[i] + jacobian * state_.by[i].mean.head<3>();
     return true;
   }
 
   void correct(const Pose& measured, Likelihood& out) {
-    const Vector3 innovation = turns()
+    const Vector3 innovation = is_rotation()
                                    ? rotation_vector(measured.rotation * rotation_.conjugate())
                                    : Vector3(measured.translation - state_.value.mean.head<3>());
     const Matrix9 p = state_.value.covariance;
@@ -80,12 +80,12 @@ class SensitiveFilter {
         0.5 * (innovation.dot(weighted) + std::log(s.determinant()) + 3 * k_log_two_pi);
     const Vector3 turn = error.head<3>();
     const Matrix3 innovation_by_turn =
-        turns() ? inverse_right_jacobian(innovation) : Matrix3(Matrix3::Identity());
+        is_rotation() ? inverse_right_jacobian(innovation) : Matrix3(Matrix3::Identity());
     Vector2 score;
     for (std::size_t i = 0; i < state_.by.size(); ++i) {
       Moments& by = state_.by[i];
-      const Vector3 place = turns() ? turned_by_[i] : Vector3(by.mean.head<3>());
-      const Vector3 innovation_by = -(innovation_by_turn * place);
+      const Vector3 mean_by = is_rotation() ? rotation_by_[i] : Vector3(by.mean.head<3>());
+      const Vector3 innovation_by = -(innovation_by_turn * mean_by);
       const Matrix3 s_by = by.covariance.topLeftCorner<3, 3>();
       score[static_cast<Eigen::Index>(i)] =
           -0.5 * (2 * weighted.dot(innovation_by) - weighted.dot(s_by * weighted) +
@@ -96,21 +96,21 @@ class SensitiveFilter {
       by.mean += error_by;
       by.covariance -= gain_by * p.topRows<3>() + gain * by.covariance.topRows<3>();
       symmetrize(by.covariance);
-      if (turns())
-        turned_by_[i] =
-            exponential_of(turn) * turned_by_[i] + left_jacobian(turn) * error_by.head<3>();
+      if (is_rotation())
+        rotation_by_[i] =
+            exponential_of(turn) * rotation_by_[i] + left_jacobian(turn) * error_by.head<3>();
     }
     state_.value.mean += error;
     state_.value.covariance -= gain * p.topRows<3>();
     symmetrize(state_.value.covariance);
-    if (turns()) rotation_ = (from_rotation_vector(turn) * rotation_).normalized();
+    if (is_rotation()) rotation_ = (from_rotation_vector(turn) * rotation_).normalized();
     out.gradient += score;
     out.scores.push_back(score);
     ++out.innovations;
   }
 
  private:
-  [[nodiscard]] bool turns() const { return part_ == MotionPart::rotation; }
+  [[nodiscard]] bool is_rotation() const { return part_ == MotionPart::rotation; }
   static void symmetrize(Matrix9& p) { p = (0.5 * (p + p.transpose())).eval(); }
 
   MotionPart part_;
@@ -120,12 +120,12 @@ class SensitiveFilter {
   double variance_ = 0;
   SensitiveMoments state_;
   Quaternion rotation_ = Quaternion::Identity();
-  std::array<Vector3, k_motion_unknowns> turned_by_{Vector3::Zero(), Vector3::Zero()};
+  std::array<Vector3, k_motion_unknowns> rotation_by_{Vector3::Zero(), Vector3::Zero()};
 };
 
 }  // namespace
 
-Likelihood likelihood_of(std::span<const StampedPose> measured, MotionPart part,
+Likelihood likelihood_of(std::span<const TimedPose> measured, MotionPart part,
                          const MotionUnknowns& unknowns, const LikelihoodSettings& settings) {
   Likelihood out;
   SensitiveFilter filter(part, unknowns, settings);
@@ -135,7 +135,7 @@ Likelihood likelihood_of(std::span<const StampedPose> measured, MotionPart part,
       filter.start(measured[i].pose);
       continue;
     }
-    if (!filter.carry(gap_s)) {
+    if (!filter.propagate(gap_s)) {
       out.integrated = false;
       return out;
     }

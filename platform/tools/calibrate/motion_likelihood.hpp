@@ -41,7 +41,7 @@ struct LikelihoodSettings {
   double gap_max_s = 0.5;
 };
 
-[[nodiscard]] Likelihood likelihood_of(std::span<const StampedPose> measured, MotionPart part,
+[[nodiscard]] Likelihood likelihood_of(std::span<const TimedPose> measured, MotionPart part,
                                        const MotionUnknowns& unknowns,
                                        const LikelihoodSettings& settings);
 

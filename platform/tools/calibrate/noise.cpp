@@ -19,8 +19,8 @@ constexpr int k_terms = 3;
 using Row = Eigen::Matrix<double, 1, k_terms>;
 
 constexpr int k_times_a_decade = 8;
-constexpr double k_rest_m = 0.02, k_rest_rad = 0.1;  // motion limit of a static tool
-constexpr double k_freedom_most = 20;  // limit of a row's weight: short times must not dominate
+constexpr double k_static_m = 0.02, k_static_rad = 0.1;  // motion limit of a static tool
+constexpr double k_weight_max = 20;  // limit of a row's weight: short times must not dominate
 
 // Window lengths 1, 2, 3, 4, 6, 8, 12 .. poses, as long as four windows fit.
 std::vector<int> window_lengths(int poses) {
@@ -103,22 +103,23 @@ Fit fit_axis(const Measured& allan, std::size_t axis, int poses, const Correlati
   Eigen::VectorXd ones(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const int frames = allan.lengths[static_cast<std::size_t>(i)];
-    const double freedom = std::min(static_cast<double>(poses) / frames, k_freedom_most);
+    const double degrees_of_freedom = std::min(static_cast<double>(poses) / frames, k_weight_max);
     const double variance = allan.variances[axis][static_cast<std::size_t>(i)];
-    rows.row(i) = model_row(times, allan.period_s, frames) * (std::sqrt(freedom) / variance);
-    ones(i) = std::sqrt(freedom);
+    rows.row(i) =
+        model_row(times, allan.period_s, frames) * (std::sqrt(degrees_of_freedom) / variance);
+    ones(i) = std::sqrt(degrees_of_freedom);
   }
   return non_negative(rows, ones);
 }
 
-Axes axes_of(std::span<const StampedPose> poses, const std::string& what) {
+Axes axes_of(std::span<const TimedPose> poses, const std::string& what) {
   Axes axes;
   const Pose& first = poses.front().pose;
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     const Vector6 away = pose_difference(pose.pose, first);
-    if (away.head<3>().norm() > k_rest_m || away.tail<3>().norm() > k_rest_rad) {
-      throw InputError(what + ": the tool moved by " + say_mm(away.head<3>().norm()) + " and " +
-                       say("%.1f deg", away.tail<3>().norm() * k_degrees_per_radian) +
+    if (away.head<3>().norm() > k_static_m || away.tail<3>().norm() > k_static_rad) {
+      throw InputError(what + ": the tool moved by " + format_mm(away.head<3>().norm()) + " and " +
+                       format_number("%.1f deg", away.tail<3>().norm() * k_degrees_per_radian) +
                        "; expected it at rest, or --relative-to the poses of a body beside it");
     }
     for (std::size_t k = 0; k < k_pose_axes; ++k)
@@ -147,7 +148,7 @@ double allan_deviation(const AxisNoise& noise, const CorrelationTimes& correlati
   return std::sqrt(model_row(correlation, period_s, frames).dot(variances));
 }
 
-NoiseCalibration calibrate_noise(std::span<const StampedPose> poses, const std::string& what) {
+NoiseCalibration calibrate_noise(std::span<const TimedPose> poses, const std::string& what) {
   const int count = static_cast<int>(poses.size());
   if (count < k_noise_poses_min) {
     throw InputError(what + ": " + std::to_string(count) + " poses; expected " +
@@ -195,14 +196,14 @@ NoiseCalibration calibrate_noise(std::span<const StampedPose> poses, const std::
   return result;
 }
 
-std::vector<StampedPose> relative_poses(std::span<const StampedPose> poses,
-                                        std::span<const StampedPose> other, Duration apart_max) {
-  std::vector<StampedPose> relative;
+std::vector<TimedPose> relative_poses(std::span<const TimedPose> poses,
+                                      std::span<const TimedPose> other, Duration apart_max) {
+  std::vector<TimedPose> relative;
   std::size_t nearest = 0;
   const auto apart = [&](std::size_t i, Time time) {
     return std::abs((other[i].time - time).nanoseconds);
   };
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     while (nearest + 1 < other.size() && apart(nearest + 1, pose.time) <= apart(nearest, pose.time))
       ++nearest;
     if (other.empty() || apart(nearest, pose.time) > apart_max.nanoseconds) continue;
@@ -228,15 +229,15 @@ CameraUncertainty marker_errors_of(const NoiseCalibration& noise, const Cell& ce
     const MarkerVariance variance{camera.pixel_sigma_px * camera.pixel_sigma_px, 0,
                                   camera.pixel_sigma_px * camera.pixel_sigma_px,
                                   camera.range_sigma_m * camera.range_sigma_m};
-    const Result<WeightedMarker> marker = weigh_marker(model, local.value, point.norm(), variance);
+    const Result<WeightedMarker> marker = whiten_marker(model, local.value, point.norm(), variance);
     if (!marker) continue;
     markers.push_back(marker.value);
     rays.push_back(local.value);
   }
   // Pose variances for 1 mm of range error and for 1 px of centroid error; they are linear in both.
   CameraUncertainty range = k_exact_camera, centroid = k_exact_camera;
-  range.slow_range_m = 0.001;
-  centroid.slow_centroid_px = 1;
+  range.correlated_range_m = 0.001;
+  centroid.correlated_centroid_px = 1;
   const auto diagonal = [&](const CameraUncertainty& one) {
     return Vector6(systematic_covariance(markers, rays, T_camera_tool, tool.middle_m(), one, 0)
                        .value.correlated.sum()
@@ -259,12 +260,12 @@ CameraUncertainty marker_errors_of(const NoiseCalibration& noise, const Cell& ce
     all += 1;
   }
   CameraUncertainty none = camera.uncertainty;
-  none.slow_range_m = none.slow_centroid_px = 0;
+  none.correlated_range_m = none.correlated_centroid_px = 0;
   if (all == 0) return none;
   const Fit fit = non_negative(rows, ones);
   CameraUncertainty errors = camera.uncertainty;
-  errors.slow_range_m = 0.001 * std::sqrt(fit.variances(0));
-  errors.slow_centroid_px = std::sqrt(fit.variances(1));
+  errors.correlated_range_m = 0.001 * std::sqrt(fit.variances(0));
+  errors.correlated_centroid_px = std::sqrt(fit.variances(1));
   errors.fast_share = fast / all;
   return errors;
 }

@@ -44,7 +44,7 @@ struct NoiseCalibration {
 
 // Throws InputError, naming `what`, for fewer poses than k_noise_poses_min, a moving tool, and
 // identical poses.
-[[nodiscard]] NoiseCalibration calibrate_noise(std::span<const StampedPose> poses,
+[[nodiscard]] NoiseCalibration calibrate_noise(std::span<const TimedPose> poses,
                                                const std::string& what);
 
 // Returns the model's Allan deviation of one axis for means over `frames` poses.
@@ -53,12 +53,12 @@ struct NoiseCalibration {
 
 // Returns `poses` relative to the pose of `other` nearest in time; skips those farther than
 // `apart_max`.
-[[nodiscard]] std::vector<StampedPose> relative_poses(std::span<const StampedPose> poses,
-                                                      std::span<const StampedPose> other,
-                                                      Duration apart_max);
+[[nodiscard]] std::vector<TimedPose> relative_poses(std::span<const TimedPose> poses,
+                                                    std::span<const TimedPose> other,
+                                                    Duration apart_max);
 
-// Returns the marker errors that cause such correlated pose errors: slow_range_m, slow_centroid_px
-// and fast_share; the other fields are the cell's.
+// Returns the marker errors that cause such correlated pose errors: correlated_range_m,
+// correlated_centroid_px and fast_share; the other fields are the cell's.
 [[nodiscard]] CameraUncertainty marker_errors_of(const NoiseCalibration& noise, const Cell& cell,
                                                  const Tool& tool, const Pose& T_camera_tool);
 

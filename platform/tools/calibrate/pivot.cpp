@@ -14,13 +14,13 @@
 namespace glint {
 namespace {
 
-constexpr int k_pivot_first_look =
+constexpr int k_pivot_first_test_poses =
     k_pivot_noise_poses_min;  // poses before the first test of the tip's sigma
 constexpr int k_refine_rounds = 3;
 
-std::vector<PivotSample> samples_of(std::span<const StampedPose> poses, const Vector3& centre_m) {
+std::vector<PivotSample> samples_of(std::span<const TimedPose> poses, const Vector3& centre_m) {
   std::vector<PivotSample> samples;
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     samples.push_back({pose.pose.rotation, pose.pose * centre_m, 1, 1});
   }
   return samples;
@@ -34,20 +34,20 @@ void set_noise(std::vector<PivotSample>& samples, const PivotNoise& noise) {
 }
 
 double chi_square(const PivotSample& sample, const PivotPoint& point) {
-  const Vector3 miss = pivot_miss(sample, point);
-  return miss.dot(miss_covariance(sample, point).llt().solve(miss));
+  const Vector3 miss = pivot_residual_of(sample, point);
+  return miss.dot(residual_covariance(sample, point).llt().solve(miss));
 }
 
-std::vector<bool> near_ones(const std::vector<PivotSample>& samples, const PivotPoint& point,
-                            double limit) {
+std::vector<bool> inliers_of(const std::vector<PivotSample>& samples, const PivotPoint& point,
+                             double limit) {
   std::vector<bool> kept;
   for (const PivotSample& sample : samples) kept.push_back(chi_square(sample, point) <= limit);
   return kept;
 }
 
-double correlated(const std::vector<PivotSample>& kept, const PivotPoint& point) {
+double variance_inflation_of(const std::vector<PivotSample>& kept, const PivotPoint& point) {
   std::vector<Vector3> misses;
-  for (const PivotSample& sample : kept) misses.push_back(pivot_miss(sample, point));
+  for (const PivotSample& sample : kept) misses.push_back(pivot_residual_of(sample, point));
   return correlation_factor(misses);
 }
 
@@ -58,33 +58,34 @@ Matrix3 tip_covariance(const std::vector<PivotSample>& kept, const PivotPoint& p
   for (const PivotSample& sample : kept) {
     Eigen::Matrix<double, 3, 6> row;
     row << sample.rotation.toRotationMatrix(), -Matrix3::Identity();
-    information += row.transpose() * miss_covariance(sample, point).inverse() * row;
+    information += row.transpose() * residual_covariance(sample, point).inverse() * row;
     sum += chi_square(sample, point);
   }
-  const double freedom = 3.0 * static_cast<double>(kept.size()) - 6.0;
-  return inverse_of(information).topLeftCorner<3, 3>() * (sum / freedom);
+  const double degrees_of_freedom = 3.0 * static_cast<double>(kept.size()) - 6.0;
+  return inverse_of(information).topLeftCorner<3, 3>() * (sum / degrees_of_freedom);
 }
 
 // Returns whether these first poses reach stop_sigma_m; uses the linear solution only.
-bool enough(const std::vector<PivotSample>& samples, std::span<const StampedPose> poses,
-            const PivotSettings& settings) {
+bool reaches_sigma(const std::vector<PivotSample>& samples, std::span<const TimedPose> poses,
+                   const PivotSettings& settings) {
   std::vector<PivotSample> known = samples;
   const PivotPoint point = robust_pivot(known);
   set_noise(known, pivot_noise(known, point));
-  const std::vector<bool> near = near_ones(known, point, settings.inlier_chi_square);
+  const std::vector<bool> near = inliers_of(known, point, settings.inlier_chi_square);
   const std::vector<PivotSample> kept = kept_of(known, near);
-  const std::vector<StampedPose> moved = kept_of(poses, near);
+  const std::vector<TimedPose> moved = kept_of(poses, near);
   if (kept.size() < static_cast<std::size_t>(k_pivot_poses_min) ||
       rotation_spread(moved).spread_rad[0] < settings.spread_min_rad)
     return false;
-  return largest_sigma(tip_covariance(kept, point) * correlated(kept, point)) <=
+  return largest_sigma(tip_covariance(kept, point) * variance_inflation_of(kept, point)) <=
          settings.stop_sigma_m;
 }
 
-std::size_t poses_needed(std::span<const StampedPose> poses, const PivotSettings& settings) {
+std::size_t poses_needed(std::span<const TimedPose> poses, const PivotSettings& settings) {
   if (settings.stop_sigma_m <= 0) return poses.size();
-  for (std::size_t n = k_pivot_first_look; n < poses.size(); n += n / 4) {
-    if (enough(samples_of(poses.first(n), settings.centre_m), poses.first(n), settings)) return n;
+  for (std::size_t n = k_pivot_first_test_poses; n < poses.size(); n += n / 4) {
+    if (reaches_sigma(samples_of(poses.first(n), settings.centre_m), poses.first(n), settings))
+      return n;
   }
   return poses.size();
 }
@@ -93,10 +94,10 @@ void check_motion(const PivotResult& result, const PivotSettings& settings,
                   const std::string& what) {
   if (result.spread.spread_rad[0] >= settings.spread_min_rad) return;
   throw InputError(what + ": the tool's direction " +
-                   say_direction(result.spread.directions.col(0)) + " moved by only " +
-                   say_degrees(result.spread.spread_rad[0]) +
+                   format_direction(result.spread.directions.col(0)) + " moved by only " +
+                   format_degrees(result.spread.spread_rad[0]) +
                    " rms, so the tip along it stays open; expected at least " +
-                   say_degrees(settings.spread_min_rad) +
+                   format_degrees(settings.spread_min_rad) +
                    ": tilt the tool to all sides while its tip stands still");
 }
 
@@ -106,13 +107,13 @@ void check_fit(const PivotResult& result, const PivotSettings& settings, const s
     return;
   throw InputError(what + ": " + std::to_string(result.outliers) + " of " +
                    std::to_string(result.poses_used) + " poses do not fit and the others miss by " +
-                   say_mm(result.rms_m) + " rms; expected at most half and " +
-                   say_mm(settings.rms_max_m) + ": the tip must stand still in a dent");
+                   format_mm(result.rms_m) + " rms; expected at most half and " +
+                   format_mm(settings.rms_max_m) + ": the tip must stand still in a dent");
 }
 
 }  // namespace
 
-PivotResult calibrate_pivot(std::span<const StampedPose> poses, const PivotSettings& settings,
+PivotResult calibrate_pivot(std::span<const TimedPose> poses, const PivotSettings& settings,
                             const std::string& what) {
   if (poses.size() < static_cast<std::size_t>(k_pivot_poses_min)) {
     throw InputError(what + ": " + std::to_string(poses.size()) + " poses; expected at least " +
@@ -124,15 +125,16 @@ PivotResult calibrate_pivot(std::span<const StampedPose> poses, const PivotSetti
 
   PivotResult result;
   result.poses_used = static_cast<int>(samples.size());
-  const bool few = result.poses_used < k_pivot_noise_poses_min;
-  const double gate = (few ? 9 : 1) * settings.inlier_chi_square;
+  const bool few_poses = result.poses_used < k_pivot_noise_poses_min;
+  const double gate = (few_poses ? 9 : 1) * settings.inlier_chi_square;
   for (int round = 0; round < k_refine_rounds; ++round) {
-    set_noise(samples, few ? pivot_noise_alike(samples, point) : pivot_noise(samples, point));
-    result.kept = near_ones(samples, point, gate);
-    const std::vector<StampedPose> moved = kept_of(poses, result.kept);
+    set_noise(samples,
+              few_poses ? isotropic_pivot_noise(samples, point) : pivot_noise(samples, point));
+    result.kept = inliers_of(samples, point, gate);
+    const std::vector<TimedPose> moved = kept_of(poses, result.kept);
     result.spread = rotation_spread(moved);
     check_motion(result, settings, what);
-    point = few          ? plain_pivot(kept_of(samples, result.kept))
+    point = few_poses    ? unweighted_pivot(kept_of(samples, result.kept))
             : round == 0 ? refined_pivot(samples, point, PivotLoss::cauchy)
                          : refined_pivot(kept_of(samples, result.kept), point, PivotLoss::none);
   }
@@ -140,19 +142,19 @@ PivotResult calibrate_pivot(std::span<const StampedPose> poses, const PivotSetti
   const std::vector<PivotSample> kept = kept_of(samples, result.kept);
   double squares = 0;
   for (const PivotSample& sample : samples) {
-    result.distances_m.push_back(pivot_miss(sample, point).norm());
+    result.distances_m.push_back(pivot_residual_of(sample, point).norm());
   }
-  for (const PivotSample& sample : kept) squares += pivot_miss(sample, point).squaredNorm();
+  for (const PivotSample& sample : kept) squares += pivot_residual_of(sample, point).squaredNorm();
   result.tip_m = point.lever_m + settings.centre_m;
   result.post_m = point.post_m;
   result.rms_m = std::sqrt(squares / static_cast<double>(kept.size()));
   result.outliers = static_cast<int>(samples.size() - kept.size());
   result.position_sigma_m = samples[0].position_sigma_m;
   result.rotation_sigma_rad = samples[0].rotation_sigma_rad;
-  result.correlated = correlated(kept, point);
+  result.variance_inflation = variance_inflation_of(kept, point);
   const Vector3 scaled_m = settings.scale_sigma * (result.tip_m - settings.centre_m);
   result.tip_covariance_m2 =
-      tip_covariance(kept, point) * result.correlated + scaled_m * scaled_m.transpose();
+      tip_covariance(kept, point) * result.variance_inflation + scaled_m * scaled_m.transpose();
   result.tip_sigma_m = largest_sigma(result.tip_covariance_m2);
   result.sigma_reached = settings.stop_sigma_m <= 0 || result.tip_sigma_m <= settings.stop_sigma_m;
   check_fit(result, settings, what);

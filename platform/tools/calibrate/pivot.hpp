@@ -42,7 +42,7 @@ struct PivotResult {
   double rms_m = 0;             // of |R tip + t - post| over the kept poses
   double position_sigma_m = 0;  // estimated noise of the poses, per axis
   double rotation_sigma_rad = 0;
-  double correlated = 1;  // variance inflation by autocorrelation
+  double variance_inflation = 1;  // by autocorrelation
   RotationSpread spread;
   std::vector<double> distances_m;  // of each pose used: |R tip + t - post|
   std::vector<bool> kept;
@@ -53,7 +53,7 @@ struct PivotResult {
 
 // Throws InputError, naming `what` (a file), for too few poses, for motion that leaves a direction
 // of the tip undetermined (names it), and for poses that do not rotate about one point.
-[[nodiscard]] PivotResult calibrate_pivot(std::span<const StampedPose> poses,
+[[nodiscard]] PivotResult calibrate_pivot(std::span<const TimedPose> poses,
                                           const PivotSettings& settings, const std::string& what);
 
 }  // namespace glint

@@ -33,11 +33,11 @@ PivotPoint weighted_pivot(std::span<const PivotSample> samples, std::span<const 
   return {solution.head<3>(), solution.tail<3>()};
 }
 
-PivotPoint plain_pivot(std::span<const PivotSample> samples) {
+PivotPoint unweighted_pivot(std::span<const PivotSample> samples) {
   return weighted_pivot(samples, std::vector<double>(samples.size(), 1.0));
 }
 
-Vector3 pivot_miss(const PivotSample& sample, const PivotPoint& point) {
+Vector3 pivot_residual_of(const PivotSample& sample, const PivotPoint& point) {
   return sample.rotation * point.lever_m + sample.centre_m - point.post_m;
 }
 
@@ -47,7 +47,7 @@ PivotPoint robust_pivot(std::span<const PivotSample> samples) {
   std::vector<double> distances(samples.size());
   for (int round = 0; round < k_huber_rounds; ++round) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      distances[i] = pivot_miss(samples[i], point).norm();
+      distances[i] = pivot_residual_of(samples[i], point).norm();
     }
     const double limit = k_huber_medians * median_of(distances);
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -65,7 +65,7 @@ PivotNoise pivot_noise(std::span<const PivotSample> samples, const PivotPoint& p
   const double lever = point.lever_m.norm();
   std::vector<double> along, across;
   for (const PivotSample& sample : samples) {
-    const Vector3 miss = pivot_miss(sample, point);
+    const Vector3 miss = pivot_residual_of(sample, point);
     const Vector3 direction =
         lever > 1e-9 ? Vector3(sample.rotation * point.lever_m / lever) : Vector3(Vector3::UnitX());
     const Vector3 first = direction.unitOrthogonal();
@@ -75,21 +75,21 @@ PivotNoise pivot_noise(std::span<const PivotSample> samples, const PivotPoint& p
   }
   const double position = std::max(sigma_of(along), k_position_sigma_min_m);
   const double sideways = sigma_of(across);
-  if (!(lever > 1e-3 && sideways > position)) return pivot_noise_alike(samples, point);
+  if (!(lever > 1e-3 && sideways > position)) return isotropic_pivot_noise(samples, point);
   const double turned = std::sqrt(sideways * sideways - position * position) / lever;
   return {position, std::max(turned, k_rotation_sigma_min_rad)};
 }
 
-PivotNoise pivot_noise_alike(std::span<const PivotSample> samples, const PivotPoint& point) {
+PivotNoise isotropic_pivot_noise(std::span<const PivotSample> samples, const PivotPoint& point) {
   std::vector<double> components;
   for (const PivotSample& sample : samples) {
-    const Vector3 miss = pivot_miss(sample, point);
+    const Vector3 miss = pivot_residual_of(sample, point);
     for (int axis = 0; axis < 3; ++axis) components.push_back(miss[axis]);
   }
   return {std::max(sigma_of(components), k_position_sigma_min_m), k_rotation_sigma_min_rad};
 }
 
-Matrix3 miss_covariance(const PivotSample& sample, const PivotPoint& point) {
+Matrix3 residual_covariance(const PivotSample& sample, const PivotPoint& point) {
   const Vector3 lever = sample.rotation * point.lever_m;
   const double turned = sample.rotation_sigma_rad * sample.rotation_sigma_rad;
   const double moved = sample.position_sigma_m * sample.position_sigma_m;

@@ -18,13 +18,13 @@ struct PivotPoint {
                                         std::span<const double> weights);
 
 // Least squares with unit weights.
-[[nodiscard]] PivotPoint plain_pivot(std::span<const PivotSample> samples);
+[[nodiscard]] PivotPoint unweighted_pivot(std::span<const PivotSample> samples);
 
 // Least squares with Huber weights scaled by the median distance; resists a third of outliers.
 [[nodiscard]] PivotPoint robust_pivot(std::span<const PivotSample> samples);
 
 // R lever + centre - post of one sample.
-[[nodiscard]] Vector3 pivot_miss(const PivotSample& sample, const PivotPoint& point);
+[[nodiscard]] Vector3 pivot_residual_of(const PivotSample& sample, const PivotPoint& point);
 
 // Noise of the samples, separated by direction: along the lever arm only position noise acts.
 struct PivotNoise {
@@ -34,11 +34,11 @@ struct PivotNoise {
 [[nodiscard]] PivotNoise pivot_noise(std::span<const PivotSample> samples, const PivotPoint& point);
 
 // Attributes all noise to the position, isotropic.
-[[nodiscard]] PivotNoise pivot_noise_alike(std::span<const PivotSample> samples,
-                                           const PivotPoint& point);
+[[nodiscard]] PivotNoise isotropic_pivot_noise(std::span<const PivotSample> samples,
+                                               const PivotPoint& point);
 
-// Expected covariance of a pivot_miss: isotropic position noise, and rotation noise across the
-// lever arm.
-[[nodiscard]] Matrix3 miss_covariance(const PivotSample& sample, const PivotPoint& point);
+// Expected covariance of a pivot_residual_of: isotropic position noise, and rotation noise across
+// the lever arm.
+[[nodiscard]] Matrix3 residual_covariance(const PivotSample& sample, const PivotPoint& point);
 
 }  // namespace glint

@@ -53,15 +53,15 @@ void take_recording(const PoseSource& source, PoseSeries& series) {
   const BlobSeries blobs = recorded_blobs(source.poses, "", source.tool);
   if (!blobs.failures.empty()) throw InputError(blobs.failures.front());
   series.tool = blobs.tool;
-  const SightingSeries seen = find_tool(blobs, *series.tool, {k_recorded_range_sigma_m});
-  if (seen.sightings.empty()) {
+  const ObservationSeries seen = find_tool(blobs, *series.tool, {k_recorded_range_sigma_m});
+  if (seen.observations.empty()) {
     throw InputError(source.poses + ": the tool \"" + series.tool->name.data() + "\" in none of " +
                      std::to_string(seen.frames) + " frames; expected it in view");
   }
-  series.begin = seen.sightings.front().pose.time;
-  for (const Sighting& sighting : seen.sightings) {
+  series.begin = seen.observations.front().pose.time;
+  for (const ToolObservation& observation : seen.observations) {
     series.poses.push_back(
-        {Time{(sighting.pose.time - series.begin).nanoseconds}, sighting.pose.pose});
+        {Time{(observation.pose.time - series.begin).nanoseconds}, observation.pose.pose});
   }
   series.unsolved = seen.unsolved;
 }
@@ -77,11 +77,11 @@ PoseSeries recorded_poses(RecordedFrames& recorded, std::size_t tool, PoseFrame 
   series.what = recorded.path;
   series.tool = recorded.cell.tools.items[tool];
   series.scale_sigma = recorded.cell.camera.uncertainty.range_scale;
-  std::vector<StampedPose> in_camera, in_world;
+  std::vector<TimedPose> in_camera, in_world;
   TrackedFrames tracked =
       track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
         const Track& track = tracker.output<Estimates>().tracks[tool];
-        if (!track.seen_now) return;
+        if (!track.measured_now) return;
         in_camera.push_back({arrived.frame.mid_exposure, track.T_camera_tool});
         if (track.base == ReferenceFrame::world) in_world.push_back(track.newest);
       });
@@ -96,7 +96,7 @@ PoseSeries recorded_poses(RecordedFrames& recorded, std::size_t tool, PoseFrame 
                      "; expected it in view: `glint inspect --recording` names the cause");
   }
   series.begin = series.poses.front().time;
-  for (StampedPose& pose : series.poses) pose.time = Time{(pose.time - series.begin).nanoseconds};
+  for (TimedPose& pose : series.poses) pose.time = Time{(pose.time - series.begin).nanoseconds};
   series.unsolved = tracked.frames - static_cast<int>(series.poses.size());
   series.failures = std::move(tracked.failures);
   return series;
@@ -130,7 +130,7 @@ PoseSeries load_pose_series(const PoseSource& source) {
   series.poses = std::move(trajectory.samples);
   if (source.of_tip) {
     const Pose T_tip_tool{Quaternion::Identity(), -series.tool->tip_m};
-    for (StampedPose& pose : series.poses) pose.pose = pose.pose * T_tip_tool;
+    for (TimedPose& pose : series.poses) pose.pose = pose.pose * T_tip_tool;
   }
   return series;
 }

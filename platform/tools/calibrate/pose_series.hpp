@@ -31,9 +31,9 @@ struct PoseSource {
 };
 
 struct PoseSeries {
-  std::vector<StampedPose> poses;  // time stamps ascend, from 0
-  Time begin;                      // the first time stamp as in the file
-  int unsolved = 0;                // point frames without a pose
+  std::vector<TimedPose> poses;  // time stamps ascend, from 0
+  Time begin;                    // the first time stamp as in the file
+  int unsolved = 0;              // point frames without a pose
   std::optional<Tool> tool;
   double scale_sigma = 0;  // of all positions, from the camera's ranges; recorded frames only
   std::string what;        // file name, for messages

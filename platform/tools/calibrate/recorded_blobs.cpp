@@ -16,20 +16,21 @@ namespace glint {
 namespace {
 
 // Markers that are cut off, merged, or ranged at their rim have errors of another kind.
-constexpr std::uint8_t k_spoiled = k_marker_no_depth | k_marker_ring_depth | k_marker_saturated |
-                                   k_marker_touches_edge | k_marker_has_neighbour | k_marker_uneven;
+constexpr std::uint8_t k_rejected_flags = k_marker_no_depth | k_marker_annulus_depth |
+                                          k_marker_saturated | k_marker_touches_edge |
+                                          k_marker_has_neighbour | k_marker_not_isolated;
 
 // `blobs`: null if the recording has none.
 BlobFrame frame_of(Time time, const Markers& markers, const Blobs* blobs, const Camera& camera) {
   BlobFrame frame{time, {}};
   for (int i = 0; i < markers.count; ++i) {
     const Marker& marker = markers.items[static_cast<std::size_t>(i)];
-    if ((marker.flags & k_spoiled) != 0 || !(marker.surface_range_m > 0)) continue;
+    if ((marker.flags & k_rejected_flags) != 0 || !(marker.surface_range_m > 0)) continue;
     int steps = 0;
     const Result<LocalRays> rays =
         local_rays(camera.model, marker.centroid_px, k_ray_steps_max, steps);
     if (!rays) continue;
-    SeenBlob blob;
+    ObservedBlob blob;
     blob.rays = rays.value;
     blob.surface_range_m = marker.surface_range_m;
     blob.sigma_x_px = static_cast<double>(marker.sigma_px[0]);
@@ -70,7 +71,7 @@ BlobSeries recorded_markers(RecordingReader& reader, const std::string& path,
 }
 
 // Gives the blob search the marker kind of a tool whose marker positions are not known yet.
-Tool stand_in(Tool tool) {
+Tool placeholder_tool(Tool tool) {
   tool.markers_m = {Vector3{0, 0, 0}, Vector3{0.1, 0, 0}, Vector3{0, 0.07, 0}};
   tool.marker_count = 3;
   (void)prepare_tool(tool);
@@ -109,7 +110,7 @@ BlobSeries recorded_blobs(RecordedFrames& recorded, const std::string& tool) {
 
 std::vector<PointFrame> recorded_points(RecordedFrames& recorded, const Tool& kind,
                                         std::vector<std::string>& failures) {
-  set_only_tool(recorded.cell, stand_in(kind));
+  set_only_tool(recorded.cell, placeholder_tool(kind));
   std::vector<PointFrame> frames;
   TrackedFrames tracked = track_frames(
       recorded, Search::everywhere, [&](const ArrivedFrame& arrived, Tracker& tracker) {

@@ -4,14 +4,14 @@
 
 namespace glint {
 
-RotationSpread rotation_spread(std::span<const StampedPose> poses) {
+RotationSpread rotation_spread(std::span<const TimedPose> poses) {
   RotationSpread result;
   if (poses.empty()) return result;
   Matrix3 mean = Matrix3::Zero();
-  for (const StampedPose& pose : poses) mean += pose.pose.rotation.toRotationMatrix();
+  for (const TimedPose& pose : poses) mean += pose.pose.rotation.toRotationMatrix();
   mean /= static_cast<double>(poses.size());
   Matrix3 squares = Matrix3::Zero();
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     const Matrix3 off = pose.pose.rotation.toRotationMatrix() - mean;
     squares += off.transpose() * off;
   }

@@ -14,6 +14,6 @@ struct RotationSpread {
   Matrix3 directions = Matrix3::Identity();  // columns: unit, tool frame
 };
 
-[[nodiscard]] RotationSpread rotation_spread(std::span<const StampedPose> poses);
+[[nodiscard]] RotationSpread rotation_spread(std::span<const TimedPose> poses);
 
 }  // namespace glint

@@ -9,19 +9,21 @@
 
 namespace glint {
 
-[[nodiscard]] inline std::string say(const char* format, double value) {
+[[nodiscard]] inline std::string format_number(const char* format, double value) {
   char text[48];
   std::snprintf(text, sizeof text, format, value);
   return text;
 }
 
-[[nodiscard]] inline std::string say_mm(double metres) { return say("%.3g mm", metres * 1e3); }
-
-[[nodiscard]] inline std::string say_degrees(double radians) {
-  return say("%.3g deg", radians * k_degrees_per_radian);
+[[nodiscard]] inline std::string format_mm(double metres) {
+  return format_number("%.3g mm", metres * 1e3);
 }
 
-[[nodiscard]] inline std::string say_direction(const Vector3& d) {
+[[nodiscard]] inline std::string format_degrees(double radians) {
+  return format_number("%.3g deg", radians * k_degrees_per_radian);
+}
+
+[[nodiscard]] inline std::string format_direction(const Vector3& d) {
   char text[80];
   std::snprintf(text, sizeof text, "[%.2f, %.2f, %.2f]", d.x(), d.y(), d.z());
   return text;

@@ -16,7 +16,7 @@
 namespace glint {
 
 // A blob without a label.
-struct SeenBlob {
+struct ObservedBlob {
   LocalRays rays;  // around its pixel
   double surface_range_m = 0;
   double sigma_x_px = 0, sigma_y_px = 0, sigma_range_m = 0;  // 0: unknown
@@ -26,7 +26,7 @@ struct SeenBlob {
 
 struct BlobFrame {
   Time time;
-  std::vector<SeenBlob> blobs;
+  std::vector<ObservedBlob> blobs;
 };
 
 struct BlobSeries {
@@ -38,31 +38,31 @@ struct BlobSeries {
   std::vector<std::string> failures;  // read errors, a line each
 };
 
-struct SeenMarker {
+struct ObservedMarker {
   int marker = 0;  // index in the tool
-  SeenBlob blob;
+  ObservedBlob blob;
 };
 
-struct Sighting {
-  StampedPose pose;  // T_camera_tool
-  std::vector<SeenMarker> markers;
+struct ToolObservation {
+  TimedPose pose;  // T_camera_tool
+  std::vector<ObservedMarker> markers;
 };
 
-struct SightingSettings {
+struct ObservationSettings {
   // Standard deviation of a range, including errors common to all markers.
   double range_sigma_m = 0.010;
 };
 
-struct SightingSeries {
-  std::vector<Sighting> sightings;
+struct ObservationSeries {
+  std::vector<ToolObservation> observations;
   int frames = 0;     // of the series
   int unsolved = 0;   // frames without a pose
   int ambiguous = 0;  // of `unsolved`: two labelings fit equally well
 };
 
 // Labels each frame by itself, without a prior; returns the labeling of least chi-square.
-[[nodiscard]] SightingSeries find_tool(const BlobSeries& series, const Tool& tool,
-                                       const SightingSettings& settings);
+[[nodiscard]] ObservationSeries find_tool(const BlobSeries& series, const Tool& tool,
+                                          const ObservationSettings& settings);
 
 // Finds the markers again, without bias correction, in recorded frames of any kind or in a
 // recording of level blobs. For the cell file (empty: the recording's own, else the built-in one)

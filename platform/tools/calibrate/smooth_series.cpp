@@ -12,11 +12,11 @@ constexpr double k_reach_s = 0.05;
 constexpr int k_samples_min = 5;
 
 // Position, and rotation vector relative to the middle pose, by least squares over 1, t, t^2.
-Pose smoothed(std::span<const StampedPose> near, const StampedPose& middle) {
+Pose smoothed(std::span<const TimedPose> near, const TimedPose& middle) {
   Matrix3 normal = Matrix3::Zero();
   Eigen::Matrix<double, 3, 6> right = Eigen::Matrix<double, 3, 6>::Zero();
   int count = 0;
-  for (const StampedPose& pose : near) {
+  for (const TimedPose& pose : near) {
     const double t = (pose.time - middle.time).seconds() / k_reach_s;
     if (t < -1 || t > 1) continue;
     const Vector3 powers(1, t, t * t);
@@ -36,8 +36,8 @@ Pose smoothed(std::span<const StampedPose> near, const StampedPose& middle) {
 
 }  // namespace
 
-std::vector<StampedPose> smooth_series(std::span<const StampedPose> poses) {
-  std::vector<StampedPose> result;
+std::vector<TimedPose> smooth_series(std::span<const TimedPose> poses) {
+  std::vector<TimedPose> result;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t first = i - std::min(i, k_neighbours);
     const std::size_t last = std::min(i + k_neighbours + 1, poses.size());

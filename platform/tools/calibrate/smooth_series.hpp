@@ -13,6 +13,6 @@ namespace glint {
 // position and rotation vector. Keeps a pose unchanged if fewer than five samples are near.
 // Source: Savitzky and Golay 1964, "Smoothing and differentiation of data"; here for irregular time
 // stamps.
-[[nodiscard]] std::vector<StampedPose> smooth_series(std::span<const StampedPose> poses);
+[[nodiscard]] std::vector<TimedPose> smooth_series(std::span<const TimedPose> poses);
 
 }  // namespace glint

@@ -13,26 +13,26 @@
 namespace glint {
 namespace {
 
-constexpr int k_spin_first_look = 30;  // poses before the first test of the sigma
+constexpr int k_spin_first_test_poses = 30;  // poses before the first test of the sigma
 constexpr double k_outlier_sigmas = 4;
 constexpr double k_wobble_sigma_min_rad = 1e-7;
 constexpr int k_start_rounds = 3;
 
-std::vector<Vector3> misses_of(std::span<const StampedPose> poses, const SpinAxis& axis) {
+std::vector<Vector3> residuals_of(std::span<const TimedPose> poses, const SpinAxis& axis) {
   std::vector<Vector3> misses;
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     misses.push_back(pose.pose.rotation * axis.tool - axis.tracker);
   }
   return misses;
 }
 
 // The tool direction that moved least, and its mean direction in the tracker frame.
-SpinAxis axis_of(std::span<const StampedPose> poses, const Vector3& towards) {
+SpinAxis axis_of(std::span<const TimedPose> poses, const Vector3& towards) {
   SpinAxis axis;
   axis.tool = rotation_spread(poses).directions.col(0);
   if (axis.tool.dot(towards) < 0) axis.tool = -axis.tool;
   Vector3 sum = Vector3::Zero();
-  for (const StampedPose& pose : poses) sum += pose.pose.rotation * axis.tool;
+  for (const TimedPose& pose : poses) sum += pose.pose.rotation * axis.tool;
   axis.tracker = sum.norm() > 0 ? Vector3(sum.normalized()) : Vector3::UnitZ();
   return axis;
 }
@@ -44,7 +44,7 @@ double wobble_sigma(const std::vector<Vector3>& misses) {
   return std::max(median_of(lengths) / 1.1774, k_wobble_sigma_min_rad);
 }
 
-std::vector<bool> near_ones(const std::vector<Vector3>& misses) {
+std::vector<bool> inliers_of(const std::vector<Vector3>& misses) {
   const double limit = k_outlier_sigmas * wobble_sigma(misses);
   std::vector<bool> kept;
   for (const Vector3& miss : misses) kept.push_back(miss.norm() <= limit);
@@ -61,11 +61,11 @@ Across across(const Vector3& axis) {
 }
 
 // Covariance from the Jacobians of both axes' tangents, scaled by the residual variance.
-Matrix3 axis_covariance(std::span<const StampedPose> poses, const SpinAxis& axis) {
+Matrix3 axis_covariance(std::span<const TimedPose> poses, const SpinAxis& axis) {
   const Across tool = across(axis.tool), tracker = across(axis.tracker);
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   double squares = 0;
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     Eigen::Matrix<double, 3, 4> row;
     row << pose.pose.rotation.toRotationMatrix() * tool, -tracker;
     information += row.transpose() * row;
@@ -77,11 +77,11 @@ Matrix3 axis_covariance(std::span<const StampedPose> poses, const SpinAxis& axis
 
 // The tool's point nearest to its origin that stays on one line along the axis: the minimum-norm
 // solution of the normal equations, which leave the direction along the axis free.
-void find_foot(std::span<const StampedPose> poses, const SpinAxis& axis, SpinResult& result) {
+void find_foot(std::span<const TimedPose> poses, const SpinAxis& axis, SpinResult& result) {
   const Matrix3 project = Matrix3::Identity() - axis.tracker * axis.tracker.transpose();
   Matrix6 normal = Matrix6::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     Eigen::Matrix<double, 3, 6> row;
     row << project * pose.pose.rotation.toRotationMatrix(), -project;
     normal += row.transpose() * row;
@@ -95,72 +95,74 @@ void find_foot(std::span<const StampedPose> poses, const SpinAxis& axis, SpinRes
   }
   result.foot_m = solution.head<3>() - axis.tool * axis.tool.dot(solution.head<3>());
   double squares = 0;
-  for (const StampedPose& pose : poses) {
+  for (const TimedPose& pose : poses) {
     const Vector3 off = pose.pose * Vector3(solution.head<3>()) - solution.tail<3>();
     squares += (project * off).squaredNorm();
   }
   result.foot_rms_m = std::sqrt(squares / static_cast<double>(poses.size()));
 }
 
-SpinAxis robust_start(std::span<const StampedPose> poses, const Vector3& towards) {
+SpinAxis robust_start(std::span<const TimedPose> poses, const Vector3& towards) {
   SpinAxis axis = axis_of(poses, towards);
   for (int round = 0; round < k_start_rounds; ++round) {
-    axis = axis_of(kept_of(poses, near_ones(misses_of(poses, axis))), towards);
+    axis = axis_of(kept_of(poses, inliers_of(residuals_of(poses, axis))), towards);
   }
   return axis;
 }
 
-std::vector<Quaternion> rotations_of(std::span<const StampedPose> poses) {
+std::vector<Quaternion> rotations_of(std::span<const TimedPose> poses) {
   std::vector<Quaternion> rotations;
-  for (const StampedPose& pose : poses) rotations.push_back(pose.pose.rotation);
+  for (const TimedPose& pose : poses) rotations.push_back(pose.pose.rotation);
   return rotations;
 }
 
-std::size_t poses_needed(std::span<const StampedPose> poses, const SpinSettings& settings) {
+std::size_t poses_needed(std::span<const TimedPose> poses, const SpinSettings& settings) {
   if (settings.stop_sigma_rad <= 0) return poses.size();
-  for (std::size_t n = k_spin_first_look; n < poses.size(); n += n / 4) {
-    const SpinAxis axis = robust_start(poses.first(n), settings.towards_m);
-    const std::vector<Vector3> misses = misses_of(poses.first(n), axis);
-    const std::vector<StampedPose> kept = kept_of(poses.first(n), near_ones(misses));
-    if (rotation_spread(kept).spread_rad[1] < settings.turn_min_rad) continue;
-    const double factor = correlation_factor(misses_of(kept, axis));
+  for (std::size_t n = k_spin_first_test_poses; n < poses.size(); n += n / 4) {
+    const SpinAxis axis = robust_start(poses.first(n), settings.axis_side_m);
+    const std::vector<Vector3> misses = residuals_of(poses.first(n), axis);
+    const std::vector<TimedPose> kept = kept_of(poses.first(n), inliers_of(misses));
+    if (rotation_spread(kept).spread_rad[1] < settings.rotation_min_rad) continue;
+    const double factor = correlation_factor(residuals_of(kept, axis));
     if (largest_sigma(axis_covariance(kept, axis) * factor) <= settings.stop_sigma_rad) return n;
   }
   return poses.size();
 }
 
 void check(const SpinResult& result, const SpinSettings& settings, const std::string& what) {
-  if (result.spread.spread_rad[1] < settings.turn_min_rad) {
+  if (result.spread.spread_rad[1] < settings.rotation_min_rad) {
     throw InputError(what + ": the tool turned by only " +
-                     say_degrees(result.spread.spread_rad[1]) + " rms; expected at least " +
-                     say_degrees(settings.turn_min_rad) + " about one axis: roll it to and fro");
+                     format_degrees(result.spread.spread_rad[1]) + " rms; expected at least " +
+                     format_degrees(settings.rotation_min_rad) +
+                     " about one axis: roll it to and fro");
   }
   if (result.rms_rad > settings.wobble_max_rad) {
     throw InputError(what + ": no direction of the tool stood still, the steadiest, " +
-                     say_direction(result.axis) + ", moved by " + say_degrees(result.rms_rad) +
-                     " rms; expected at most " + say_degrees(settings.wobble_max_rad) +
+                     format_direction(result.axis) + ", moved by " +
+                     format_degrees(result.rms_rad) + " rms; expected at most " +
+                     format_degrees(settings.wobble_max_rad) +
                      ": turn the tool about one axis only");
   }
 }
 
 }  // namespace
 
-SpinResult calibrate_spin(std::span<const StampedPose> poses, const SpinSettings& settings,
+SpinResult calibrate_spin(std::span<const TimedPose> poses, const SpinSettings& settings,
                           const std::string& what) {
   if (poses.size() < static_cast<std::size_t>(k_spin_poses_min)) {
     throw InputError(what + ": " + std::to_string(poses.size()) + " poses; expected at least " +
                      std::to_string(k_spin_poses_min) + " while the tool turns about one axis");
   }
   poses = poses.first(poses_needed(poses, settings));
-  SpinAxis axis = robust_start(poses, settings.towards_m);
-  axis = refined_axis(rotations_of(poses), axis, wobble_sigma(misses_of(poses, axis)));
+  SpinAxis axis = robust_start(poses, settings.axis_side_m);
+  axis = refined_axis(rotations_of(poses), axis, wobble_sigma(residuals_of(poses, axis)));
 
   SpinResult result;
-  result.kept = near_ones(misses_of(poses, axis));
-  const std::vector<StampedPose> kept = kept_of(poses, result.kept);
+  result.kept = inliers_of(residuals_of(poses, axis));
+  const std::vector<TimedPose> kept = kept_of(poses, result.kept);
   axis = refined_axis(rotations_of(kept), axis, 0);
-  for (const Vector3& miss : misses_of(poses, axis)) result.wobble_rad.push_back(miss.norm());
-  const std::vector<Vector3> misses = misses_of(kept, axis);
+  for (const Vector3& miss : residuals_of(poses, axis)) result.wobble_rad.push_back(miss.norm());
+  const std::vector<Vector3> misses = residuals_of(kept, axis);
   double squares = 0;
   for (const Vector3& miss : misses) squares += miss.squaredNorm();
 
@@ -171,8 +173,8 @@ SpinResult calibrate_spin(std::span<const StampedPose> poses, const SpinSettings
   result.poses_used = static_cast<int>(poses.size());
   result.outliers = static_cast<int>(poses.size() - kept.size());
   check(result, settings, what);
-  result.correlated = correlation_factor(misses);
-  result.axis_covariance_rad2 = axis_covariance(kept, axis) * result.correlated;
+  result.variance_inflation = correlation_factor(misses);
+  result.axis_covariance_rad2 = axis_covariance(kept, axis) * result.variance_inflation;
   result.axis_sigma_rad = largest_sigma(result.axis_covariance_rad2);
   result.sigma_reached =
       settings.stop_sigma_rad <= 0 || result.axis_sigma_rad <= settings.stop_sigma_rad;

@@ -16,10 +16,10 @@
 namespace glint {
 
 struct SpinSettings {
-  double stop_sigma_rad = 0;     // stop when the axis's sigma is below; 0: use every pose
-  double turn_min_rad = 0.35;    // rms about the axis: rotation by 70 degrees to and fro
-  double wobble_max_rad = 0.10;  // rms of the axis; above it the rotation had no single axis
-  Vector3 towards_m = Vector3::UnitZ();  // the axis points to this side of the tool
+  double stop_sigma_rad = 0;       // stop when the axis's sigma is below; 0: use every pose
+  double rotation_min_rad = 0.35;  // rms about the axis: rotation by 70 degrees to and fro
+  double wobble_max_rad = 0.10;    // rms of the axis; above it the rotation had no single axis
+  Vector3 axis_side_m = Vector3::UnitZ();  // the axis points to this side of the tool
 };
 
 inline constexpr int k_spin_poses_min = 12;
@@ -32,7 +32,7 @@ struct SpinResult {
   double axis_sigma_rad = 0;  // of the less certain direction across the axis
   double rms_rad = 0;         // wobble of the axis over the kept poses
   double foot_rms_m = 0;      // rms distance of the foot from the axis's line
-  double correlated = 1;
+  double variance_inflation = 1;
   RotationSpread spread;
   std::vector<double> wobble_rad;  // of each pose used
   std::vector<bool> kept;
@@ -43,7 +43,7 @@ struct SpinResult {
 
 // Throws InputError, naming `what` (a file), for too few poses, too little rotation or no one
 // axis.
-[[nodiscard]] SpinResult calibrate_spin(std::span<const StampedPose> poses,
+[[nodiscard]] SpinResult calibrate_spin(std::span<const TimedPose> poses,
                                         const SpinSettings& settings, const std::string& what);
 
 }  // namespace glint

@@ -19,17 +19,17 @@ constexpr double k_drawn_noise_m = 0.002;  // manufacturing, and size error by u
 // Sum of squared distances from the centroid.
 double spread_m2(const std::vector<Vector3>& points) {
   double squares = 0;
-  for (const Vector3& p : points) squares += (p - middle_of(points)).squaredNorm();
+  for (const Vector3& p : points) squares += (p - centroid_of(points)).squaredNorm();
   return squares;
 }
 
 // Rotates the markers about their centroid to their principal axes, the longest first. The farthest
 // marker along x and along y gets the positive sign.
-void turn_to_axes(std::vector<Vector3>& markers) {
-  const Vector3 middle = middle_of(markers);
+void rotate_to_principal_axes(std::vector<Vector3>& markers) {
+  const Vector3 centroid = centroid_of(markers);
   Matrix3 spread = Matrix3::Zero();
   for (Vector3& m : markers) {
-    m -= middle;
+    m -= centroid;
     spread += m * m.transpose();
   }
   const SymmetricEigen principal = symmetric_eigen(spread);
@@ -49,14 +49,14 @@ void turn_to_axes(std::vector<Vector3>& markers) {
 }
 
 // Transforms into the drawing's frame and marker order.
-void lay_on(const Tool& drawn, const std::string& what, ToolGeometry& geometry) {
+void register_to(const Tool& drawn, const std::string& what, ToolGeometry& geometry) {
   const PointFrame points{Time{}, geometry.markers_m};
   const Labeling label = label_segment({&points, 1}, {0, 1}, drawn, k_drawn_noise_m).front();
   const std::size_t count = geometry.markers_m.size();
   const auto drawn_count = static_cast<std::size_t>(drawn.marker_count);
   if (count != drawn_count || static_cast<std::size_t>(label.count) != count) {
     throw InputError(what + ": " + std::to_string(label.count) + " of " + std::to_string(count) +
-                     " markers found lie within " + say_mm(2 * k_drawn_noise_m) + " of the " +
+                     " markers found lie within " + format_mm(2 * k_drawn_noise_m) + " of the " +
                      std::to_string(drawn_count) + " drawn of \"" + drawn.name.data() +
                      "\"; expected every one: this tool alone, each marker in a fifth of the "
                      "frames or more");
@@ -66,7 +66,7 @@ void lay_on(const Tool& drawn, const std::string& what, ToolGeometry& geometry) 
     const auto from = static_cast<std::size_t>(label.marker[i]);
     named.markers_m[i] = geometry.markers_m[from];
     named.marker_sigma_m[i] = geometry.marker_sigma_m[from];
-    named.seen[i] = geometry.seen[from];
+    named.frame_counts[i] = geometry.frame_counts[from];
   }
   const std::span<const Vector3> as_drawn(drawn.markers_m.data(), count);
   const RigidFit fit = fit_rigid(named.markers_m, as_drawn);
@@ -77,10 +77,10 @@ void lay_on(const Tool& drawn, const std::string& what, ToolGeometry& geometry) 
 
 }  // namespace
 
-Vector3 middle_of(const std::vector<Vector3>& points) {
-  Vector3 middle = Vector3::Zero();
-  for (const Vector3& p : points) middle += p / static_cast<double>(points.size());
-  return middle;
+Vector3 centroid_of(const std::vector<Vector3>& points) {
+  Vector3 centroid = Vector3::Zero();
+  for (const Vector3& p : points) centroid += p / static_cast<double>(points.size());
+  return centroid;
 }
 
 double longest_side(const std::vector<Vector3>& markers) {
@@ -103,11 +103,11 @@ void set_size(const ToolGeometrySettings& settings, ToolGeometry& geometry) {
     geometry.scale = drawn_spread / spread;
     sigma = drawn.marker_sigma_m / drawn_spread;
   }
-  const Vector3 middle = middle_of(geometry.markers_m);
+  const Vector3 centroid = centroid_of(geometry.markers_m);
   for (std::size_t i = 0; i < geometry.markers_m.size(); ++i) {
     Vector3& marker = geometry.markers_m[i];
-    marker = middle + geometry.scale * (marker - middle);
-    const double moved_m = sigma * (marker - middle).norm() / std::sqrt(3.0);  // per axis
+    marker = centroid + geometry.scale * (marker - centroid);
+    const double moved_m = sigma * (marker - centroid).norm() / std::sqrt(3.0);  // per axis
     geometry.marker_sigma_m[i] = std::hypot(geometry.scale * geometry.marker_sigma_m[i], moved_m);
   }
 }
@@ -115,9 +115,9 @@ void set_size(const ToolGeometrySettings& settings, ToolGeometry& geometry) {
 void set_frame(const ToolGeometrySettings& settings, const std::string& what,
                ToolGeometry& geometry) {
   if (settings.drawn) {
-    lay_on(*settings.drawn, what, geometry);
+    register_to(*settings.drawn, what, geometry);
   } else {
-    turn_to_axes(geometry.markers_m);
+    rotate_to_principal_axes(geometry.markers_m);
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace glint {
 
-[[nodiscard]] Vector3 middle_of(const std::vector<Vector3>& points);
+[[nodiscard]] Vector3 centroid_of(const std::vector<Vector3>& points);
 [[nodiscard]] double longest_side(const std::vector<Vector3>& markers);
 
 // Scales the markers to the measured longest side, else to the drawing's size, else not at all. The

@@ -25,15 +25,17 @@
 namespace glint {
 
 struct ToolGeometrySettings {
-  double noise_m = 0.001;     // of a marker, per axis: initial value; estimated again from the data
-  double seen_min = 0.2;      // share of all frames; a marker seen less often is rejected as stray
+  double noise_m = 0.001;  // of a marker, per axis: initial value; estimated again from the data
+  double frame_share_min =
+      0.2;                    // share of all frames; a marker seen less often is rejected as stray
   double step_max_m = 0.03;   // between frames; a longer step begins a new segment
   double longest_side_m = 0;  // measured; scales the markers to it; 0: no scaling
   double longest_side_sigma_m = 0;
   // Remaining effect of slow range errors on the mean of each marker over the recording.
-  double slow_range_m = 0;
+  double correlated_range_m = 0;
   std::optional<Tool> drawn;  // the markers are returned in its frame and order
-  double turn_min_rad = 0.1;  // rms; with less motion, errors along one direction are undetected
+  // rms; with less motion, errors along one direction are undetected
+  double rotation_min_rad = 0.1;
   int rounds = 4;
 };
 
@@ -42,11 +44,11 @@ inline constexpr int k_tool_frames_min = 20;
 struct ToolGeometry {
   std::vector<Vector3> markers_m;      // drawing's frame; else centroid and principal axes
   std::vector<double> marker_sigma_m;  // per axis, root of the mean variance
-  std::vector<int> seen;               // number of frames with each marker
+  std::vector<int> frame_counts;       // number of frames with each marker
   double noise_m = 0;                  // of a measured marker, per axis
   double scale = 1;                    // applied for longest_side_m or the drawing
   double drawn_rms_m = 0;              // distances of the markers from the drawing's
-  double turn_rad = 0;                 // rms rotation of the tool's steadiest direction
+  double rotation_spread_rad = 0;      // rms rotation of the tool's steadiest direction
   int frames = 0, frames_used = 0;
   int points = 0, points_used = 0;  // the others are strays and outliers
   int segments = 0;
@@ -59,7 +61,7 @@ struct ToolGeometry {
                                           const ToolGeometrySettings& settings,
                                           const std::string& what);
 
-// Returns settings.slow_range_m for frames of this camera.
+// Returns settings.correlated_range_m for frames of this camera.
 [[nodiscard]] double slow_range_of_mean(std::span<const PointFrame> frames, const Camera& camera);
 
 // Returns all blobs with a range, each frame searched completely, in the camera's frame: a rigid

@@ -13,19 +13,19 @@ constexpr double k_noise_min_m = 2e-5;
 constexpr double k_cluster_noises = 6;
 constexpr double k_cluster_radius_min_m = 0.002;
 
-double robust_noise(const ToolRound& round) {
+double robust_noise(const ToolIteration& round) {
   std::vector<double> components;
   for (const LabelledPoint& point : round.points) {
-    const Vector3 miss = bundle_miss(round.bundle, point);
+    const Vector3 miss = bundle_residual(round.bundle, point);
     for (int axis = 0; axis < 3; ++axis) components.push_back(miss[axis]);
   }
   return std::max(sigma_of(components), k_noise_min_m);
 }
 
-void drop_outliers(ToolRound& round) {
+void drop_outliers(ToolIteration& round) {
   const double limit = std::sqrt(k_chi_square_of_three) * robust_noise(round);
   std::erase_if(round.points, [&](const LabelledPoint& point) {
-    return bundle_miss(round.bundle, point).norm() > limit;
+    return bundle_residual(round.bundle, point).norm() > limit;
   });
   // Fewer than three points do not determine a pose.
   std::vector<int> left(round.frames.size(), 0);
@@ -34,27 +34,27 @@ void drop_outliers(ToolRound& round) {
 }
 
 // Removes poses without points.
-void compact(ToolRound& round) {
-  std::vector<std::size_t> place(round.frames.size(), 0), frames;
+void compact(ToolIteration& round) {
+  std::vector<std::size_t> index(round.frames.size(), 0), frames;
   std::vector<Pose> poses;
   std::vector<bool> used(round.frames.size(), false);
   for (const LabelledPoint& point : round.points) used[point.frame] = true;
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
-    place[i] = frames.size();
+    index[i] = frames.size();
     frames.push_back(round.frames[i]);
     poses.push_back(round.bundle.poses[i]);
   }
-  for (LabelledPoint& point : round.points) point.frame = place[point.frame];
+  for (LabelledPoint& point : round.points) point.frame = index[point.frame];
   round.frames = std::move(frames);
   round.bundle.poses = std::move(poses);
 }
 
 }  // namespace
 
-ToolRound round_of(std::span<const PointFrame> frames, std::size_t begin,
-                   const NamedFrames& named) {
-  ToolRound round;
+ToolIteration round_of(std::span<const PointFrame> frames, std::size_t begin,
+                       const LabelledFrames& named) {
+  ToolIteration round;
   round.bundle.markers_m.assign(named.tool.markers_m.begin(),
                                 named.tool.markers_m.begin() + named.tool.marker_count);
   for (std::size_t i = 0; i < named.labels.size(); ++i) {
@@ -72,7 +72,7 @@ ToolRound round_of(std::span<const PointFrame> frames, std::size_t begin,
   return round;
 }
 
-void fit(ToolRound& round, double noise_m) {
+void fit(ToolIteration& round, double noise_m) {
   round.bundle = refined_bundle(std::move(round.bundle), round.points, noise_m);
   drop_outliers(round);
   compact(round);
@@ -81,16 +81,16 @@ void fit(ToolRound& round, double noise_m) {
   round.noise_m = std::max(bundle_noise(round.bundle, round.points), k_noise_min_m);
 }
 
-std::vector<int> seen_by_marker(const ToolRound& round) {
+std::vector<int> frame_counts_by_marker(const ToolIteration& round) {
   std::vector<int> seen(round.bundle.markers_m.size(), 0);
   for (const LabelledPoint& point : round.points) ++seen[point.marker];
   return seen;
 }
 
-std::vector<Vector3> next_markers(std::span<const PointFrame> frames, const ToolRound& round,
-                                  double seen_min) {
-  const std::vector<int> seen = seen_by_marker(round);
-  const double least = seen_min * static_cast<double>(round.frames.size());
+std::vector<Vector3> next_markers(std::span<const PointFrame> frames, const ToolIteration& round,
+                                  double frame_share_min) {
+  const std::vector<int> seen = frame_counts_by_marker(round);
+  const double least = frame_share_min * static_cast<double>(round.frames.size());
   std::vector<Vector3> markers;
   for (std::size_t m = 0; m < seen.size(); ++m) {
     if (seen[m] >= least) markers.push_back(round.bundle.markers_m[m]);
@@ -100,13 +100,13 @@ std::vector<Vector3> next_markers(std::span<const PointFrame> frames, const Tool
     const Pose T_tool_file = round.bundle.poses[i].inverse();
     for (const Vector3& point : frames[round.frames[i]].points_m) clusters.add(T_tool_file * point);
   }
-  for (const Vector3& place : clusters.seen_at_least(least)) {
+  for (const Vector3& centre : clusters.centres_with_count_min(least)) {
     const auto near = [&](const Vector3& marker) {
-      return (marker - place).norm() < 2 * clusters.radius_m();
+      return (marker - centre).norm() < 2 * clusters.radius_m();
     };
     if (std::none_of(markers.begin(), markers.end(), near) &&
         markers.size() < static_cast<std::size_t>(k_markers_per_tool_max))
-      markers.push_back(place);
+      markers.push_back(centre);
   }
   return markers;
 }

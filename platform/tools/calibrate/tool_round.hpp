@@ -12,12 +12,12 @@
 
 namespace glint {
 
-struct NamedFrames {
+struct LabelledFrames {
   Tool tool;
   std::vector<Labeling> labels;  // of successive frames
 };
 
-struct ToolRound {
+struct ToolIteration {
   std::vector<std::size_t> frames;  // of the recording; the bundle's poses are in this order
   std::vector<LabelledPoint> points;
   Bundle bundle;
@@ -25,18 +25,18 @@ struct ToolRound {
 };
 
 // Requires that the labels are those of frames `begin` and following.
-[[nodiscard]] ToolRound round_of(std::span<const PointFrame> frames, std::size_t begin,
-                                 const NamedFrames& named);
+[[nodiscard]] ToolIteration round_of(std::span<const PointFrame> frames, std::size_t begin,
+                                     const LabelledFrames& named);
 
 // Fits with a Cauchy loss of noise_m, removes outliers and frames with fewer than three points,
 // fits again and estimates the noise. Leaves no points if nothing fits.
-void fit(ToolRound& round, double noise_m);
+void fit(ToolIteration& round, double noise_m);
 
 // Number of frames with each marker.
-[[nodiscard]] std::vector<int> seen_by_marker(const ToolRound& round);
+[[nodiscard]] std::vector<int> frame_counts_by_marker(const ToolIteration& round);
 
 // Returns the markers seen in at least this share of the frames, and other recurring points.
 [[nodiscard]] std::vector<Vector3> next_markers(std::span<const PointFrame> frames,
-                                                const ToolRound& round, double seen_min);
+                                                const ToolIteration& round, double frame_share_min);
 
 }  // namespace glint

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int k_markers_needed = 3;
 // With more blobs, some match a tool's distances by chance: such a trial shows no cause.
-constexpr int k_spots_max = 40;
+constexpr int k_blobs_trial_max = 40;
 
 std::string name_of_tool(const Cell& cell, int tool) {
   return cell.tools.items[static_cast<std::size_t>(tool)].name.data();
@@ -41,8 +41,8 @@ class Trials {
     tracker_->input<Frame>() = frame_;
     tracker_->activate();
     const Blobs& blobs = tracker_->token<Blobs>();
-    return tracker_->output<Estimates>().tracks[0].seen_now &&
-           blobs.count + static_cast<int>(blobs.left_out) <= k_spots_max;
+    return tracker_->output<Estimates>().tracks[0].measured_now &&
+           blobs.count + static_cast<int>(blobs.left_out) <= k_blobs_trial_max;
   }
 
  private:
@@ -63,12 +63,12 @@ std::string text(const char* format, auto... values) {
   return line;
 }
 
-struct Seen {
+struct ObservedBlobs {
   const Blobs& blobs;
   const Markers& markers;
   int without_depth = 0;
 
-  explicit Seen(Tracker& tracker)
+  explicit ObservedBlobs(Tracker& tracker)
       : blobs(tracker.token<Blobs>()), markers(tracker.token<Markers>()) {
     int ranged = 0;
     for (int i = 0; i < markers.count; ++i) {
@@ -103,7 +103,7 @@ const char* mismatch_text(Reason reason) {
       return "the spots fit, but too imprecisely: few, or nearly on a line";
     case Reason::ambiguous:
       return "the spots fit in two ways: a symmetric or flat tool, or a far one";
-    case Reason::taken_by_other:
+    case Reason::markers_assigned_elsewhere:
       return "the spots that fit belong to another tool";
     case Reason::search_full:
       return "too many spots for [budget] search_steps";
@@ -117,14 +117,14 @@ const char* mismatch_text(Reason reason) {
 // Tries range, marker size and brightness, in this order: a lower threshold enlarges blobs and can
 // hide a wrong size; a wrong size can imitate a wrong range. Returns true if one of them is the
 // cause.
-bool add_settings_rows(const Camera& camera, const Tool& tool, const Seen& seen, Trials& trials,
-                       std::vector<CheckRow>& rows) {
+bool add_settings_rows(const Camera& camera, const Tool& tool, const ObservedBlobs& seen,
+                       Trials& trials, std::vector<CheckRow>& rows) {
   bool explained = false;
   const auto add = [&](CheckRow row, const auto& values, const auto& change, const auto& explain) {
     for (const auto& value : values) {
       if (explained) break;
       if (!trials.finds([&](Cell& changed) { change(changed, value); })) continue;
-      row.holds = false;
+      row.passes = false;
       explain(row, value);
       explained = true;
     }
@@ -150,7 +150,7 @@ bool add_settings_rows(const Camera& camera, const Tool& tool, const Seen& seen,
             "hold the tool within the range, or set [camera] range_mm = [%.0f, %.0f]", from, to);
       });
   if (!explained && seen.blobs.count >= k_markers_needed && seen.ranged() < k_markers_needed) {
-    rows.back().holds = false;
+    rows.back().passes = false;
     rows.back().next_step =
         "check the depth plane and [camera] depth, depth_unit_mm, depth_invalid_from";
     explained = true;
@@ -188,11 +188,11 @@ bool add_settings_rows(const Camera& camera, const Tool& tool, const Seen& seen,
 // Adds the observations, and the change of the trial that finds the tool.
 void add_causes(const Cell& cell, Tracker& tracker, const Tool& tool, Reason reason,
                 std::vector<CheckRow>& rows) {
-  const Seen seen(tracker);
+  const ObservedBlobs seen(tracker);
   Trials trials(cell, tracker.input<Frame>(), tool);
   CheckRow search{"search", true, "the whole frame, or where the tool was expected", ""};
   if (trials.finds([](Cell&) {})) {
-    search.holds = false;
+    search.passes = false;
     search.found = "a newly started tracker finds the tool in this frame";
     search.next_step =
         "see the frames before: the tool was followed elsewhere, or has just come back";
@@ -205,30 +205,30 @@ void add_causes(const Cell& cell, Tracker& tracker, const Tool& tool, Reason rea
   CheckRow spots{"spots", true,
                  text("%d with a range; a pose needs %d", seen.ranged(), k_markers_needed), ""};
   if (!explained && seen.ranged() < k_markers_needed) {
-    spots.holds = false;
+    spots.passes = false;
     spots.next_step = "uncover the markers, or turn the tool to the camera";
   }
   rows.push_back(spots);
-  if (explained || !spots.holds) return;
+  if (explained || !spots.passes) return;
 
   CheckRow distances{"distances", false, mismatch_text(reason),
                      "compare the tool's file with the tool: glint calibrate tool"};
   for (const char* other : {"pen", "board"}) {
-    const std::optional<Tool> known = built_in_tool(other);
-    if (!known || tool.name == known->name) continue;
-    if (!Trials(cell, tracker.input<Frame>(), *known).finds([](Cell&) {})) continue;
+    const std::optional<Tool> built_in = built_in_tool(other);
+    if (!built_in || tool.name == built_in->name) continue;
+    if (!Trials(cell, tracker.input<Frame>(), *built_in).finds([](Cell&) {})) continue;
     distances.found += std::string("; they fit the tool \"") + other + "\"";
     distances.next_step = std::string("list the tool that is there: tools = [\"") + other + "\"]";
   }
   for (int t = 0; t < cell.tools.count; ++t) {
     const Track& track = tracker.output<Estimates>().tracks[static_cast<std::size_t>(t)];
-    if (track.seen_now) distances.found += "; \"" + name_of_tool(cell, t) + "\" has its own";
+    if (track.measured_now) distances.found += "; \"" + name_of_tool(cell, t) + "\" has its own";
   }
   rows.push_back(distances);
 }
 
 std::string result_text(const Track& track) {
-  if (!track.seen_now) return std::string(name_of(track.reason));
+  if (!track.measured_now) return std::string(name_of(track.reason));
   std::string markers;
   for (int m = 0; m < k_markers_per_tool_max; ++m) {
     if ((track.marker_mask >> m & 1) != 0)
@@ -246,17 +246,17 @@ std::vector<ToolDiagnosis> diagnose(const Cell& cell, Tracker& tracker) {
     const Track& track = tracker.output<Estimates>().tracks[i];
     ToolDiagnosis diagnosis;
     diagnosis.tool = name_of_tool(cell, t);
-    diagnosis.found = track.seen_now;
+    diagnosis.found = track.measured_now;
     diagnosis.rows = {frame_row(tracker), head_row(tracker)};
-    const bool usable = diagnosis.rows[0].holds;
-    if (usable && !track.seen_now) {
+    const bool usable = diagnosis.rows[0].passes;
+    if (usable && !track.measured_now) {
       add_causes(cell, tracker, cell.tools.items[i], track.reason, diagnosis.rows);
     }
     diagnosis.rows.push_back(
-        {"pose", track.seen_now, result_text(track),
-         track.seen_now ? "" : "see the first check above that does not hold"});
+        {"pose", track.measured_now, result_text(track),
+         track.measured_now ? "" : "see the first check above that does not hold"});
     for (const CheckRow& row : diagnosis.rows) {
-      if (!row.holds && diagnosis.cause.empty()) diagnosis.cause = row.check;
+      if (!row.passes && diagnosis.cause.empty()) diagnosis.cause = row.check;
     }
     all.push_back(std::move(diagnosis));
   }
@@ -271,8 +271,8 @@ std::vector<std::string> marker_names(const Cell& cell, Tracker& tracker) {
   for (int t = 0; t < cell.tools.count; ++t) {
     const auto i = static_cast<std::size_t>(t);
     if (assigned.reason[i] != Reason::none) continue;
-    if (!tracker.output<Estimates>().tracks[i].seen_now) continue;
-    const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_slices).tools[i];
+    if (!tracker.output<Estimates>().tracks[i].measured_now) continue;
+    const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_partitions).tools[i];
     const Labeling& labeling = labeling_of(assigned, fitted, i);
     for (std::size_t m = 0; m < k_markers_per_tool_max; ++m) {
       const int marker = labeling.marker[m];

@@ -15,7 +15,7 @@ namespace glint {
 
 struct CheckRow {
   std::string check;  // "brightness"
-  bool holds = true;
+  bool passes = true;
   std::string found;      // "2 spots above 1280; with 640 the tool is found"
   std::string next_step;  // empty if the check holds
 };

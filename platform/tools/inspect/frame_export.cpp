@@ -21,7 +21,7 @@ Pose with_origin(const Pose& T_frame_tool, const Tool& tool, PoseOrigin origin) 
 // Covariance of the exported pose: translation of its origin, rotation about the frame's axes.
 Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& tool,
                       PoseOrigin origin) {
-  TipPlace tip = tip_of(tool);
+  TipPosition tip = tip_of(tool);
   if (origin == PoseOrigin::tool) tip.sigma_m = 0;  // no tip error in the tool's origin
   Matrix6 covariance = tip_covariance(track, fit, tip);
   if (origin == PoseOrigin::tool) {
@@ -32,7 +32,7 @@ Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& too
       track.newest.pose.rotation * track.T_camera_tool.rotation.conjugate();
   // head_covariance refers to the centroid of the markers.
   const Vector3 to = (origin == PoseOrigin::tip ? tool.tip_m : Vector3(Vector3::Zero()));
-  return turned_covariance(covariance, world_camera) +
+  return rotated_covariance(covariance, world_camera) +
          moved_covariance(track.head_covariance,
                           track.newest.pose.rotation * (to - tool.middle_m()));
 }
@@ -45,11 +45,12 @@ FramePose frame_pose(const ArrivedFrame& arrived, Tracker& tracker, const Tool& 
   pose.sequence = arrived.frame.sequence;
   pose.tool = tool.name.data();
   pose.reason = track.reason;
-  pose.state = track.seen_now                  ? TrackState::measured
-               : track.alive && !track.doubted ? TrackState::predicted
-                                               : TrackState::lost;
-  if (!track.seen_now) return pose;
-  const FittedTool& fit = tracker.parts<FittedTools>(static_cast<int>(t) % k_tool_slices).tools[t];
+  pose.state = track.measured_now                  ? TrackState::measured
+               : track.alive && !track.unconfirmed ? TrackState::predicted
+                                                   : TrackState::lost;
+  if (!track.measured_now) return pose;
+  const FittedTool& fit =
+      tracker.parts<FittedTools>(static_cast<int>(t) % k_tool_partitions).tools[t];
   pose.frame = track.base;
   pose.marker_mask = track.marker_mask;
   pose.rms_m = track.rms_m;
@@ -58,7 +59,7 @@ FramePose frame_pose(const ArrivedFrame& arrived, Tracker& tracker, const Tool& 
   return pose;
 }
 
-bool same_place(const HeadPose& one, const HeadPose& other) {
+bool same_position(const HeadPose& one, const HeadPose& other) {
   constexpr double k_rounding_m = 1e-9;
   return one.valid == other.valid &&
          (one.T_world_camera.translation - other.T_world_camera.translation).norm() < k_rounding_m;
@@ -99,7 +100,7 @@ ExportedRows export_tum(RecordedFrames& recorded, const PoseExport& wanted, cons
   TrackedFrames tracked =
       track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
         const Track& track = tracker.output<Estimates>().tracks[wanted.tool];
-        if (!track.seen_now) return;
+        if (!track.measured_now) return;
         if (world && track.base != ReferenceFrame::world) {
           ++rows.without_head_pose;
           return;
@@ -136,7 +137,8 @@ ExportedRows export_csv(RecordedFrames& recorded, const std::vector<std::size_t>
   return with_source(std::move(rows), std::move(tracked));
 }
 
-ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted, const LineOut& out) {
+ExportedRows export_ground_truth(RecordedFrames& recorded, const PoseExport& wanted,
+                                 const LineOut& out) {
   // The duration limits the simulator's frames, not its motion.
   Cell cell = recorded.cell;
   constexpr double k_longest_s = 3600;
@@ -148,7 +150,7 @@ ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted, co
   }
   ExportedRows rows;
   const Tool& tool = cell.tools.items[wanted.tool];
-  int alike = 0;
+  int matching = 0;
   sim::SimFrame made;
   FrameSource& source = *recorded.source;
   source.start({});
@@ -157,12 +159,13 @@ ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted, co
     ++rows.frames;
     const Time time = arrived.frame.mid_exposure;
     const auto delivery = deliveries.find(arrived.frame.sequence);
-    source.give_back(arrived);
+    source.release_pixels(arrived);
     if (delivery == deliveries.end()) continue;
     simulator.describe(delivery->second, made);
     if (made.mid_exposure != time) continue;
     // A delayed live run has other arrival times.
-    alike += made.arrival == arrived.frame.arrival && same_place(made.head, arrived.head) ? 1 : 0;
+    matching +=
+        made.arrival == arrived.frame.arrival && same_position(made.head, arrived.head) ? 1 : 0;
     Pose pose = simulator.truth_tool(static_cast<int>(wanted.tool), time);
     if (wanted.frame == ReferenceFrame::camera) {
       pose = simulator.truth_camera(time).inverse() * pose;
@@ -170,8 +173,8 @@ ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted, co
     out(tum_line(time, with_origin(pose, tool, wanted.origin)));
     ++rows.rows;
   }
-  if (2 * alike < rows.frames) {
-    throw InputError(recorded.path + ": no truth: " + std::to_string(alike) + " of " +
+  if (2 * matching < rows.frames) {
+    throw InputError(recorded.path + ": no truth: " + std::to_string(matching) + " of " +
                      std::to_string(rows.frames) +
                      " frames are those of its cell's simulator; expected a recording of "
                      "`glint simulate`, or of `glint run` on simulated frames");

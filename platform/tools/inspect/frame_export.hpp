@@ -47,7 +47,7 @@ struct ExportedRows {
 // Exports the simulator's ground truth at each frame's time stamp: tum_line(). Throws InputError if
 // the frames are not from the simulator of the recorded cell: compares number, time stamp, arrival
 // (its jitter depends on the random seed) and head pose.
-[[nodiscard]] ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted,
-                                        const LineOut& out);
+[[nodiscard]] ExportedRows export_ground_truth(RecordedFrames& recorded, const PoseExport& wanted,
+                                               const LineOut& out);
 
 }  // namespace glint

@@ -20,7 +20,7 @@ constexpr double k_noise_sigmas = 6;
 
 using Costs = std::array<double, k_labelings_max>;
 
-double turned_by(const Pose& a, const Pose& b) {
+double rotation_between_rad(const Pose& a, const Pose& b) {
   return rotation_vector(a.rotation * b.rotation.conjugate()).norm();
 }
 
@@ -33,11 +33,11 @@ class Paths {
       square += (tool.markers_m[static_cast<std::size_t>(i)] - tool.middle_m()).squaredNorm();
     radius_m_ = std::sqrt(square / tool.marker_count);
     const double ratio = settings.sigma_m / settings.repeated_error_m;
-    const double looks_max = ratio * ratio;
+    const double frames_max = ratio * ratio;
     for (std::size_t begin = 0; begin < frames.size();) {
       std::size_t end = begin + 1;
       while (end < frames.size() && linked(end)) ++end;
-      const double share = std::min(1.0, looks_max / static_cast<double>(end - begin));
+      const double share = std::min(1.0, frames_max / static_cast<double>(end - begin));
       for (; begin < end; ++begin) own_[begin] = own_costs(frames[begin], share);
     }
   }
@@ -60,7 +60,7 @@ class Paths {
         if (differ(frames_[f].labelings[best].T_camera_tool, frames_[f].labelings[k].T_camera_tool))
           choice.margin = std::min(choice.margin, total(k) - total(best));
       }
-      if (stands_apart(f, best)) choice.margin = 0;
+      if (is_isolated(f, best)) choice.margin = 0;
     }
     return choices;
   }
@@ -73,18 +73,19 @@ class Paths {
   // Returns whether the time since the previous frame is too short for a rotation by 180 degrees.
   [[nodiscard]] bool linked(std::size_t f) const {
     const double seconds = (frames_[f].time - frames_[f - 1].time).seconds();
-    return settings_.turn_max_rad_s * seconds < std::numbers::pi;
+    return settings_.angular_speed_max_rad_s * seconds < std::numbers::pi;
   }
 
   [[nodiscard]] Costs own_costs(const LabeledFrame& frame, double share) const {
     Costs costs{};
-    int most = 0;
-    for (const Labeling& labeling : frame.labelings) most = std::max(most, labeling.count);
+    int count_max = 0;
+    for (const Labeling& labeling : frame.labelings)
+      count_max = std::max(count_max, labeling.count);
     for (std::size_t k = 0; k < std::min(frame.labelings.size(), costs.size()); ++k) {
       const Labeling& labeling = frame.labelings[k];
       const double sigmas = labeling.rms_m / settings_.sigma_m;
-      costs[k] =
-          share * labeling.count * sigmas * sigmas + chi_square_limit(3) * (most - labeling.count);
+      costs[k] = share * labeling.count * sigmas * sigmas +
+                 chi_square_limit(3) * (count_max - labeling.count);
     }
     return costs;
   }
@@ -94,15 +95,15 @@ class Paths {
     const double noise_m = k_noise_sigmas * settings_.sigma_m;
     const double moved = (a.T_camera_tool * middle - b.T_camera_tool * middle).norm();
     if (moved > settings_.speed_max_m_s * seconds + noise_m) return false;
-    return turned_by(a.T_camera_tool, b.T_camera_tool) <=
-           settings_.turn_max_rad_s * seconds + noise_m / radius_m_;
+    return rotation_between_rad(a.T_camera_tool, b.T_camera_tool) <=
+           settings_.angular_speed_max_rad_s * seconds + noise_m / radius_m_;
   }
 
   // Cost of a step between two frames' labelings, in either order.
   [[nodiscard]] double step_cost(std::size_t f, std::size_t k, std::size_t other,
                                  std::size_t l) const {
     const double seconds = std::abs((frames_[f].time - frames_[other].time).seconds());
-    if (settings_.turn_max_rad_s * seconds >= std::numbers::pi) return 0;
+    if (settings_.angular_speed_max_rad_s * seconds >= std::numbers::pi) return 0;
     const bool follows = can_follow(frames_[f].labelings[k], frames_[other].labelings[l], seconds);
     return follows ? 0 : k_jump;
   }
@@ -126,7 +127,7 @@ class Paths {
   }
 
   // Returns whether both neighbours have labelings, but none can lead here.
-  [[nodiscard]] bool stands_apart(std::size_t f, std::size_t k) const {
+  [[nodiscard]] bool is_isolated(std::size_t f, std::size_t k) const {
     for (const std::size_t other : {f - 1, f + 1}) {
       if (other >= frames_.size() || states(other) == 0) return false;
       for (std::size_t l = 0; l < states(other); ++l)
@@ -137,7 +138,7 @@ class Paths {
 
   [[nodiscard]] bool differ(const Pose& a, const Pose& b) const {
     return (a * tool_.tip_m - b * tool_.tip_m).norm() > k_gross_misassigned_m ||
-           turned_by(a, b) > k_gross_angle_rad;
+           rotation_between_rad(a, b) > k_gross_angle_rad;
   }
 
   std::span<const LabeledFrame> frames_;

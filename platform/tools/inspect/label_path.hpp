@@ -22,10 +22,10 @@
 namespace glint {
 
 struct PathSettings {
-  double sigma_m = 0.0005;            // of a marker's coordinate
-  double repeated_error_m = 0.00004;  // minimum part of it that repeats in each frame
-  double speed_max_m_s = 5;           // of the centroid of a hand-held tool
-  double turn_max_rad_s = 20;         // of its rotation: 180 degrees take 0.16 s
+  double sigma_m = 0.0005;              // of a marker's coordinate
+  double repeated_error_m = 0.00004;    // minimum part of it that repeats in each frame
+  double speed_max_m_s = 5;             // of the centroid of a hand-held tool
+  double angular_speed_max_rad_s = 20;  // of its rotation: 180 degrees take 0.16 s
 };
 
 // Limit for an error probability of 1 in 50: 2 ln 49.

@@ -40,7 +40,7 @@ Cell recorded_source_cell(const std::string& source, const std::string& config,
   if (!source.empty()) {
     cell.source.kind = kind;
     cell.source.path = source;
-    cell.source.place = (config.empty() ? source : config) + ": source";
+    cell.source.position = (config.empty() ? source : config) + ": source";
   }
   if (cell.source.kind == "simulator") {
     throw InputError(
@@ -102,7 +102,7 @@ TrackedFrames track_frames(RecordedFrames& recorded, Search search,
     tracker->input<HeadPose>() = arrived.head;
     tracker->activate();
     if (tracker->output<Estimates>().verdict.usable()) visit(arrived, *tracker);
-    source.give_back(arrived);
+    source.release_pixels(arrived);
   }
   tracked.failures = source.report().failures;
   return tracked;

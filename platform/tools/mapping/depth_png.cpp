@@ -8,7 +8,7 @@
 namespace glint {
 
 DepthFrame read_depth_png(const std::string& path) {
-  const Picture image = read_png(path, "a PNG with one plane of 16 bits");
+  const Image image = read_png(path, "a PNG with one plane of 16 bits");
   if (image.channels != 1 || image.bits != 16) {
     throw InputError(path + ": is no PNG with one plane of 16 bits; expected depth in millimetres");
   }

@@ -74,8 +74,8 @@ DepthFrame load_npy(const std::string& path) {
           {}};
 }
 
-std::vector<LeftOut> load_left_out(const std::string& path) {
-  std::vector<LeftOut> out;
+std::vector<ExclusionCapsule> load_left_out(const std::string& path) {
+  std::vector<ExclusionCapsule> out;
   if (!std::filesystem::exists(path)) return out;
   const std::string expected = "x y z  x y z  radius of a thick line, finite, the radius above 0";
   FileText file(path, expected);
@@ -89,8 +89,8 @@ std::vector<LeftOut> load_left_out(const std::string& path) {
       if (!std::isfinite(n[i])) file.refuse("a number that is not finite", expected);
     }
     if (!(n[6] > 0)) file.refuse("no radius", expected);
-    if (static_cast<int>(out.size()) == k_left_out_max) {
-      file.refuse("one more", "at most " + std::to_string(k_left_out_max) + " lines");
+    if (static_cast<int>(out.size()) == k_exclusion_capsules_max) {
+      file.refuse("one more", "at most " + std::to_string(k_exclusion_capsules_max) + " lines");
     }
     out.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6]});
   }

@@ -19,8 +19,9 @@ struct DepthFrame {
   int width = 0, height = 0;
   std::vector<float> depth_m;
   Pose T_world_camera;
-  std::vector<LeftOut> left_out;  // capsules of pen and hands at the image's time, world frame
-  [[nodiscard]] DepthPicture picture() const { return {width, height, depth_m}; }
+  std::vector<ExclusionCapsule>
+      left_out;  // capsules of pen and hands at the image's time, world frame
+  [[nodiscard]] DepthImageView picture() const { return {width, height, depth_m}; }
 };
 
 struct DepthSequence {

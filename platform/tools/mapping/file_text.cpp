@@ -44,11 +44,11 @@ double FileText::number(std::string_view word) const {
   return value;
 }
 
-std::size_t FileText::count(std::string_view word, std::size_t most) const {
+std::size_t FileText::count(std::string_view word, std::size_t maximum) const {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size() || value > most) {
-    refuse(shown(word), "a count up to " + std::to_string(most));
+  if (error != std::errc{} || end != word.data() + word.size() || value > maximum) {
+    refuse(shown(word), "a count up to " + std::to_string(maximum));
   }
   return value;
 }

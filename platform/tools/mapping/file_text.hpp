@@ -18,10 +18,10 @@ class FileText {
   [[nodiscard]] std::string_view rest() const { return std::string_view(bytes_).substr(at_); }
   [[nodiscard]] std::size_t position() const { return at_; }
 
-  // Parses a complete word as a number (finite, infinite or NaN), or as a count up to `most`.
+  // Parses a complete word as a number (finite, infinite or NaN), or as a count up to `maximum`.
   // Throws InputError naming the line.
   [[nodiscard]] double number(std::string_view word) const;
-  [[nodiscard]] std::size_t count(std::string_view word, std::size_t most) const;
+  [[nodiscard]] std::size_t count(std::string_view word, std::size_t maximum) const;
 
   // Throws InputError("path:line N: found; expected ...").
   [[noreturn]] void refuse(const std::string& found, const std::string& expected) const;

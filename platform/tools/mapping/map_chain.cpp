@@ -32,30 +32,31 @@ struct MapChain::Kernels {
 
 MapChain::MapChain(const MapSettings& s) : kernels_(std::make_unique<Kernels>()), settings_(s) {
   Kernels& k = *kernels_;
-  const int most = s.voxels_max;
-  if (most < 1 || most > k_cloud_points_max) check(Reason::out_of_range, "voxels_max");
+  const int points_max = s.voxels_max;
+  if (points_max < 1 || points_max > k_cloud_points_max) check(Reason::out_of_range, "voxels_max");
   if (s.depth.stride < 1) check(Reason::out_of_range, "stride");
   if (s.smoothing.candidates_max < 1) check(Reason::out_of_range, "smoothing");
-  k.memory.resize(PointCloud::bytes(k_slice) + 3 * PointCloud::bytes(most) +
-                  VoxelGrid::bytes(most) + RadiusOutlier::bytes(most) +
-                  MovingLeastSquares::bytes(s.smoothing, most) + PlaneSearch::bytes(most) +
-                  PlaneSupport::bytes(most) + Arena::k_alignment);
+  k.memory.resize(PointCloud::bytes(k_slice) + 3 * PointCloud::bytes(points_max) +
+                  VoxelGrid::bytes(points_max) + RadiusOutlier::bytes(points_max) +
+                  MovingLeastSquares::bytes(s.smoothing, points_max) +
+                  PlaneSearch::bytes(points_max) + PlaneSupport::bytes(points_max) +
+                  Arena::k_alignment);
   Arena arena(k.memory);
   check(k.frame.prepare(k_slice, arena), "a slice of points");
   for (PointCloud* cloud : {&k.voxel_points, &k.kept, &k.map}) {
-    check(cloud->prepare(most, arena), "voxels_max");
+    check(cloud->prepare(points_max, arena), "voxels_max");
   }
-  check(k.voxels.prepare(s.voxels, most, arena), "voxels");
-  check(k.outliers.prepare(s.outliers, most, arena), "outliers");
-  check(k.smoothing.prepare(s.smoothing, most, arena), "smoothing");
-  check(k.planes.prepare(s.planes, most, arena), "planes");
-  check(k.support.prepare(s.support, most, arena), "support");
+  check(k.voxels.prepare(s.voxels, points_max, arena), "voxels");
+  check(k.outliers.prepare(s.outliers, points_max, arena), "outliers");
+  check(k.smoothing.prepare(s.smoothing, points_max, arena), "smoothing");
+  check(k.planes.prepare(s.planes, points_max, arena), "planes");
+  check(k.support.prepare(s.support, points_max, arena), "support");
 }
 
 MapChain::~MapChain() = default;
 
-void MapChain::add_frame(const DepthPicture& picture, const CameraModel& camera,
-                         const Pose& T_world_camera, std::span<const LeftOut> left_out) {
+void MapChain::add_frame(const DepthImageView& picture, const CameraModel& camera,
+                         const Pose& T_world_camera, std::span<const ExclusionCapsule> left_out) {
   Kernels& k = *kernels_;
   const int pixels = pixels_of(picture, settings_.depth.stride);
   for (int at = 0; at < pixels;) {
@@ -88,17 +89,18 @@ void MapChain::finish() {
   counts_.voxels = k.voxel_points.count;
   counts_.kept = k.kept.count;
   counts_.smoothed = k.map.count;
-  counts_.on_planes = -k.support.taken_off();
+  counts_.on_planes = -k.support.removed();
   for (int i = 0; i < k.planes.count(); ++i) counts_.on_planes += k.planes.plane(i).points;
   counts_.notices.clear();
   notice(counts_, k.voxels.dropped(), "points left out: more voxels than voxels_max");
   notice(counts_, k.voxels.out_of_range() + k.outliers.out_of_range() + k.smoothing.out_of_range(),
          "points left out: beyond the grid or not finite");
-  notice(counts_, k.outliers.undecided(), "points left out: too many others near them");
-  notice(counts_, k.smoothing.cut(), "points smoothed by a part of their neighbours");
+  notice(counts_, k.outliers.candidates_exceeded(), "points left out: too many others near them");
+  notice(counts_, k.smoothing.candidates_exceeded(),
+         "points smoothed by a part of their neighbours");
 }
 
-void MapChain::snap() {
+void MapChain::project_onto_planes() {
   Kernels& k = *kernels_;
   for (int at = 0; at < k.map.count;) at = snap_to_planes(k.planes, k.support, at, k_slice, k.map);
 }

@@ -26,12 +26,12 @@ class MapChain {
   MapChain(const MapChain&) = delete;
   MapChain& operator=(const MapChain&) = delete;
 
-  void add_frame(const DepthPicture& picture, const CameraModel& camera, const Pose& T_world_camera,
-                 std::span<const LeftOut> left_out = {});
+  void add_frame(const DepthImageView& picture, const CameraModel& camera,
+                 const Pose& T_world_camera, std::span<const ExclusionCapsule> left_out = {});
   // Runs voxels to planes for all frames so far; does not project points onto the planes yet.
   void finish();
   // Projects the map's points onto their planes.
-  void snap();
+  void project_onto_planes();
 
   [[nodiscard]] const PointCloud& voxel_points() const;  // after outlier removal
   [[nodiscard]] const PointCloud& map() const;

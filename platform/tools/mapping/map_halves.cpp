@@ -12,14 +12,15 @@
 namespace glint {
 namespace {
 
-constexpr int k_planes_judged = 3;
+constexpr int k_planes_evaluated = 3;
 constexpr double k_slab_m = 0.03;  // raw points within this distance belong to a plane
-constexpr double k_foot_m = 0.05;  // side of a footprint square; only squares with points count
+constexpr double k_footprint_square_m =
+    0.05;  // side of a footprint square; only squares with points count
 constexpr double k_match_cosine = 0.985;  // 10 degrees
 // The other half's surface near a point: a plane through at least this many points within this
 // radius.
 constexpr double k_around_m = 0.05;
-constexpr double k_judges_min = 10;
+constexpr double k_surface_points_min = 10;
 constexpr double k_across_cosine = 0.93969262;  // 20 degrees
 
 Vector3 point_of(const PointCloud& cloud, int i) {
@@ -34,7 +35,7 @@ double height_over(const Plane& plane, const Vector3& point) {
 // Footprint of a map on its plane: the squares with points.
 class Footprint {
  public:
-  explicit Footprint(const Plane& plane) : axes_(directions_across(plane.normal)) {}
+  explicit Footprint(const Plane& plane) : axes_(orthonormal_basis(plane.normal)) {}
   void add(const Vector3& point) { squares_.insert(square_of(point)); }
   [[nodiscard]] bool holds(const Vector3& point) const {
     return squares_.contains(square_of(point));
@@ -42,10 +43,10 @@ class Footprint {
 
  private:
   [[nodiscard]] std::pair<int, int> square_of(const Vector3& point) const {
-    return {static_cast<int>(std::floor(axes_.p.dot(point) / k_foot_m)),
-            static_cast<int>(std::floor(axes_.q.dot(point) / k_foot_m))};
+    return {static_cast<int>(std::floor(axes_.p.dot(point) / k_footprint_square_m)),
+            static_cast<int>(std::floor(axes_.q.dot(point) / k_footprint_square_m))};
   }
-  DirectionsAcross axes_;
+  OrthonormalBasis axes_;
   std::set<std::pair<int, int>> squares_;
 };
 
@@ -82,8 +83,8 @@ void match(const Plane& plane, const Vector3& middle, const PlaneSearch& others,
 }
 
 // Evaluates the plane with raw points of images that its map does not contain.
-void judge_by_held_out(const DepthSequence& sequence, const MapSettings& settings,
-                       const Plane& plane, const Footprint& footprint, PlaneAgreement& out) {
+void evaluate_by_held_out(const DepthSequence& sequence, const MapSettings& settings,
+                          const Plane& plane, const Footprint& footprint, PlaneAgreement& out) {
   double sum = 0;
   for (std::size_t i = 1; i < sequence.frames.size(); i += 2) {
     const DepthFrame& frame = sequence.frames[i];
@@ -102,8 +103,8 @@ void judge_by_held_out(const DepthSequence& sequence, const MapSettings& setting
   out.held_out_m = out.held_out > 0 ? sum / static_cast<double>(out.held_out) : 0;
 }
 
-PlaneAgreement judge(const DepthSequence& sequence, const MapSettings& settings,
-                     const MapChain& mine, const MapChain& other, int which) {
+PlaneAgreement evaluate_plane(const DepthSequence& sequence, const MapSettings& settings,
+                              const MapChain& mine, const MapChain& other, int which) {
   const Plane& plane = mine.planes().plane(which);
   const PointCloud& map = mine.map();
   PlaneAgreement out;
@@ -125,7 +126,7 @@ PlaneAgreement judge(const DepthSequence& sequence, const MapSettings& settings,
   out.voxel_rms_m = std::sqrt(before / n);
   out.smooth_rms_m = std::sqrt(after / n);
   match(plane, middle / n, other.planes(), out);
-  judge_by_held_out(sequence, settings, plane, footprint, out);
+  evaluate_by_held_out(sequence, settings, plane, footprint, out);
   return out;
 }
 
@@ -138,60 +139,61 @@ Cell cell_of(const Vector3& point) {
 
 // Plane sums of the map's points near a position, relative to it.
 PlaneSums sums_around(const PointCloud& map, const std::map<Cell, std::vector<int>>& cells,
-                      const Vector3& place) {
+                      const Vector3& position) {
   PlaneSums sums;
-  const Cell middle = cell_of(place);
+  const Cell middle = cell_of(position);
   for (int step = 0; step < 27; ++step) {
     const auto found = cells.find(
         {middle[0] + step % 3 - 1, middle[1] + step / 3 % 3 - 1, middle[2] + step / 9 - 1});
     if (found == cells.end()) continue;
     for (const int i : found->second) {
-      const Vector3 from_place = point_of(map, i) - place;
-      if (from_place.squaredNorm() > k_around_m * k_around_m) continue;
-      sums.add(from_place.x(), from_place.y(), from_place.z());
+      const Vector3 from_position = point_of(map, i) - position;
+      if (from_position.squaredNorm() > k_around_m * k_around_m) continue;
+      sums.add(from_position.x(), from_position.y(), from_position.z());
     }
   }
   return sums;
 }
 
-struct Judgement {
-  std::int64_t judged = 0, across = 0;
+struct NormalCounts {
+  std::int64_t evaluated = 0, across = 0;
   [[nodiscard]] double part() const {
-    return judged > 0 ? static_cast<double>(across) / static_cast<double>(judged) : 0;
+    return evaluated > 0 ? static_cast<double>(across) / static_cast<double>(evaluated) : 0;
   }
 };
 
 // Evaluates the projection onto planes by the surface of the other half's map. The map's own
 // normals selected the projected points, so they cannot show a fault.
-void judge_snapping(MapChain& mine, const MapChain& other, MapHalves& out) {
+void evaluate_projection(MapChain& mine, const MapChain& other, MapHalves& out) {
   std::map<Cell, std::vector<int>> cells;
   for (int i = 0; i < other.map().count; ++i) cells[cell_of(point_of(other.map(), i))].push_back(i);
   std::vector<Vector3> before;
   for (int i = 0; i < mine.map().count; ++i) before.push_back(point_of(mine.map(), i));
-  std::array<Judgement, k_planes_max> judgements{};
-  mine.snap();
+  std::array<NormalCounts, k_planes_max> normal_counts{};
+  mine.project_onto_planes();
   for (int i = 0; i < mine.map().count; ++i) {
     const std::uint8_t on = mine.support().plane_of(i);
     if (on == PlaneSearch::k_no_plane) continue;
-    ++out.snapped;
+    ++out.projected;
     const Vector3& from = before[static_cast<std::size_t>(i)];
-    out.moved_most_m = std::max(out.moved_most_m, (point_of(mine.map(), i) - from).norm());
+    out.displacement_max_m =
+        std::max(out.displacement_max_m, (point_of(mine.map(), i) - from).norm());
     const PlaneSums around = sums_around(other.map(), cells, from);
-    if (around.n < k_judges_min) continue;
-    Judgement& on_plane = judgements[on];
-    ++on_plane.judged;
+    if (around.n < k_surface_points_min) continue;
+    NormalCounts& on_plane = normal_counts[on];
+    ++on_plane.evaluated;
     const Vector3 normal = fit_plane(around).normal;
     on_plane.across +=
         std::abs(normal.dot(mine.planes().plane(on).normal)) < k_across_cosine ? 1 : 0;
   }
-  Judgement all;
-  for (std::size_t i = 0; i < judgements.size(); ++i) {
-    all.judged += judgements[i].judged;
-    all.across += judgements[i].across;
-    if (i < out.planes.size()) out.planes[i].swallowed_part = judgements[i].part();
+  NormalCounts all;
+  for (std::size_t i = 0; i < normal_counts.size(); ++i) {
+    all.evaluated += normal_counts[i].evaluated;
+    all.across += normal_counts[i].across;
+    if (i < out.planes.size()) out.planes[i].wrong_normal_share = normal_counts[i].part();
   }
-  out.judged = all.judged;
-  out.swallowed_part = all.part();
+  out.evaluated = all.evaluated;
+  out.wrong_normal_share = all.part();
 }
 
 }  // namespace
@@ -199,11 +201,11 @@ void judge_snapping(MapChain& mine, const MapChain& other, MapHalves& out) {
 MapHalves compare_halves(const DepthSequence& sequence, const MapSettings& settings) {
   Half even(sequence, settings, 0), odd(sequence, settings, 1);
   MapHalves out;
-  const int planes = std::min(even.chain().planes().count(), k_planes_judged);
+  const int planes = std::min(even.chain().planes().count(), k_planes_evaluated);
   for (int i = 0; i < planes; ++i) {
-    out.planes.push_back(judge(sequence, settings, even.chain(), odd.chain(), i));
+    out.planes.push_back(evaluate_plane(sequence, settings, even.chain(), odd.chain(), i));
   }
-  judge_snapping(even.chain(), odd.chain(), out);
+  evaluate_projection(even.chain(), odd.chain(), out);
   return out;
 }
 

@@ -36,8 +36,8 @@ Colour colour_of(std::uint8_t plane, double facing) {
 
 }  // namespace
 
-void write_map_picture(const std::string& path, const PointCloud& map, const PlaneSupport& planes,
-                       const CameraModel& camera, const Pose& T_world_camera) {
+void write_map_image(const std::string& path, const PointCloud& map, const PlaneSupport& planes,
+                     const CameraModel& camera, const Pose& T_world_camera) {
   const auto pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   std::vector<Colour> image(pixels, {30, 30, 30});

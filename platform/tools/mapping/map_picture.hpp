@@ -10,7 +10,7 @@ namespace glint {
 
 // Draws the points nearest to the camera. Points on no plane are grey; surfaces darken with their
 // angle to the viewing ray. Throws InputError if the file cannot be written.
-void write_map_picture(const std::string& path, const PointCloud& map, const PlaneSupport& planes,
-                       const CameraModel& camera, const Pose& T_world_camera);
+void write_map_image(const std::string& path, const PointCloud& map, const PlaneSupport& planes,
+                     const CameraModel& camera, const Pose& T_world_camera);
 
 }  // namespace glint

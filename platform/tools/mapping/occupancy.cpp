@@ -32,9 +32,9 @@ struct Occupancy::Tree {
   }
   // Returns whether the tree has a voxel there. The library converts coordinates to integers
   // without a range check.
-  [[nodiscard]] bool reaches(const Vector3& place) const {
+  [[nodiscard]] bool reaches(const Vector3& position) const {
     const double half_m = k_half_voxels * octree.getResolution();
-    return place.allFinite() && place.cwiseAbs().maxCoeff() < half_m;
+    return position.allFinite() && position.cwiseAbs().maxCoeff() < half_m;
   }
   void compact() {
     octree.updateInnerOccupancy();
@@ -67,9 +67,9 @@ bool Occupancy::full() const {
   return static_cast<std::int64_t>(tree_->octree.size()) >= settings_.nodes_max;
 }
 
-void Occupancy::add_view(const DepthPicture& picture, const CameraModel& camera,
+void Occupancy::add_view(const DepthImageView& picture, const CameraModel& camera,
                          const Pose& T_world_camera, const DepthPointSettings& settings,
-                         std::span<const LeftOut> left_out) {
+                         std::span<const ExclusionCapsule> left_out) {
   Tree& t = *tree_;
   t.seen.clear();
   t.free.clear();
@@ -124,9 +124,9 @@ void Occupancy::add_surface(const PointCloud& map) {
   t.compact();
 }
 
-Occupied Occupancy::at(const Vector3& place) const {
-  if (!tree_->reaches(place)) return Occupied::unknown;
-  const octomap::OcTreeNode* node = tree_->octree.search(point_of(place));
+Occupied Occupancy::at(const Vector3& position) const {
+  if (!tree_->reaches(position)) return Occupied::unknown;
+  const octomap::OcTreeNode* node = tree_->octree.search(point_of(position));
   if (node == nullptr) return Occupied::unknown;
   return tree_->octree.isNodeOccupied(node) ? Occupied::yes : Occupied::no;
 }

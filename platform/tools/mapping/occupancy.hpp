@@ -41,12 +41,13 @@ class Occupancy {
   Occupancy& operator=(const Occupancy&) = delete;
 
   // Adds the free space of one image: pixels selected by `settings`, except points in `left_out`.
-  void add_view(const DepthPicture& picture, const CameraModel& camera, const Pose& T_world_camera,
-                const DepthPointSettings& settings, std::span<const LeftOut> left_out = {});
+  void add_view(const DepthImageView& picture, const CameraModel& camera,
+                const Pose& T_world_camera, const DepthPointSettings& settings,
+                std::span<const ExclusionCapsule> left_out = {});
   // Adds the map's points; call after the views.
   void add_surface(const PointCloud& map);
 
-  [[nodiscard]] Occupied at(const Vector3& place) const;
+  [[nodiscard]] Occupied at(const Vector3& position) const;
   [[nodiscard]] double resolution_m() const { return settings_.resolution_m; }
   [[nodiscard]] const OccupancyCounts& counts() const { return counts_; }
 

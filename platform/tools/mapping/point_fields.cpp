@@ -13,13 +13,13 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 // Position of a value: its word in a line, its byte in a record.
-struct Place {
+struct ValueOffset {
   std::size_t word = 0, byte = 0;
   const PointField* field = nullptr;
 };
 
 struct Layout {
-  std::array<Place, 6> places;  // x, y, z, then the normal's
+  std::array<ValueOffset, 6> offsets;  // x, y, z, then the normal's
   bool has_normals = false;
   std::size_t words = 0, bytes = 0;
 };
@@ -36,18 +36,18 @@ Layout layout_of(const FileText& file, const std::vector<PointField>& fields) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (field.name != names[i][0] && field.name != names[i][1]) continue;
       if (field.count != 1) file.refuse("field " + field.name + " holds several", "one number");
-      out.places[i] = {out.words, out.bytes, &field};
+      out.offsets[i] = {out.words, out.bytes, &field};
     }
     out.words += field.count;
     out.bytes += field.count * field.size;
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    if (out.places[i].field == nullptr) {
+    if (out.offsets[i].field == nullptr) {
       file.refuse("no field " + std::string(names[i][0]), "x, y and z");
     }
   }
-  out.has_normals = out.places[3].field != nullptr && out.places[4].field != nullptr &&
-                    out.places[5].field != nullptr;
+  out.has_normals = out.offsets[3].field != nullptr && out.offsets[4].field != nullptr &&
+                    out.offsets[5].field != nullptr;
   return out;
 }
 
@@ -77,7 +77,7 @@ float value_of(const PointField& field, const char* from) {
 
 template <class Value>
 void add_point(const Layout& layout, Value value, HostCloud& to) {
-  const auto& p = layout.places;
+  const auto& p = layout.offsets;
   to.points.push_back({value(p[0]), value(p[1]), value(p[2])});
   if (layout.has_normals) to.normals.push_back({value(p[3]), value(p[4]), value(p[5])});
 }
@@ -104,7 +104,9 @@ HostCloud read_ascii_points(FileText& file, const std::vector<PointField>& field
     }
     add_point(
         layout,
-        [&](const Place& place) { return static_cast<float>(file.number(words[place.word])); },
+        [&](const ValueOffset& offset) {
+          return static_cast<float>(file.number(words[offset.word]));
+        },
         out);
   }
   return out;
@@ -122,7 +124,8 @@ HostCloud read_binary_points(const FileText& file, const std::vector<PointField>
   for (std::size_t i = 0; i < points; ++i) {
     const char* const record = bytes.data() + i * layout.bytes;
     add_point(
-        layout, [&](const Place& place) { return value_of(*place.field, record + place.byte); },
+        layout,
+        [&](const ValueOffset& offset) { return value_of(*offset.field, record + offset.byte); },
         out);
   }
   return out;
@@ -150,9 +153,9 @@ HostCloud read_compressed_points(const FileText& file, const std::vector<PointFi
   }
   HostCloud out;
   for (std::size_t i = 0; i < points; ++i) {
-    const auto value = [&](const Place& place) {
-      const char* const first = bytes.data() + place.byte * points;
-      return value_of(*place.field, first + i * place.field->size);
+    const auto value = [&](const ValueOffset& offset) {
+      const char* const first = bytes.data() + offset.byte * points;
+      return value_of(*offset.field, first + i * offset.field->size);
     };
     add_point(layout, value, out);
   }

@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-constexpr std::chrono::milliseconds k_look_again{20};
+constexpr std::chrono::milliseconds k_poll_period{20};
 constexpr std::size_t k_keys_max = 64;  // per wake-up
 
 }  // namespace
@@ -32,12 +32,12 @@ KeyReader::~KeyReader() {
 
 void KeyReader::read_once() {
   pollfd waiting{descriptor_, POLLIN, 0};
-  if (::poll(&waiting, 1, static_cast<int>(k_look_again.count())) <= 0) return;
+  if (::poll(&waiting, 1, static_cast<int>(k_poll_period.count())) <= 0) return;
   std::array<char, k_keys_max> keys{};
   const ssize_t count = ::read(descriptor_, keys.data(), keys.size());
   // poll() always reports a closed terminal as ready, without data.
   if (count <= 0) {
-    std::this_thread::sleep_for(k_look_again);
+    std::this_thread::sleep_for(k_poll_period);
     return;
   }
   const Time time = now_();

@@ -17,13 +17,13 @@ constexpr int k_ending_signals[] = {SIGHUP,  SIGINT, SIGQUIT, SIGTERM, SIGABRT,
 
 // Global, since a signal handler receives only the signal number.
 int g_terminal = -1;
-termios g_before{};
+termios g_saved_settings{};
 
 // Calls only async-signal-safe functions. Flushes the input, so that unread keys do not reach the
 // shell.
 void restore() {
   ::tcflush(g_terminal, TCIFLUSH);
-  ::tcsetattr(g_terminal, TCSANOW, &g_before);
+  ::tcsetattr(g_terminal, TCSANOW, &g_saved_settings);
 }
 
 void restore_and_end(int signal) {
@@ -34,7 +34,7 @@ void restore_and_end(int signal) {
 }  // namespace
 
 KeyTerminal::KeyTerminal(int descriptor, const char* name) : descriptor_(descriptor) {
-  if (::isatty(descriptor) == 0 || ::tcgetattr(descriptor, &g_before) != 0)
+  if (::isatty(descriptor) == 0 || ::tcgetattr(descriptor, &g_saved_settings) != 0)
     throw InputError(std::string(name) + " is no terminal; expected one whose keys are buttons");
   g_terminal = descriptor;
   struct sigaction end {};
@@ -45,7 +45,7 @@ KeyTerminal::KeyTerminal(int descriptor, const char* name) : descriptor_(descrip
     ::sigaction(signal, nullptr, &now);
     if (now.sa_handler == SIG_DFL) ::sigaction(signal, &end, nullptr);
   }
-  termios keys = g_before;
+  termios keys = g_saved_settings;
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   keys.c_cc[VMIN] = 1;
   keys.c_cc[VTIME] = 0;

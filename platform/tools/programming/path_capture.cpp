@@ -7,8 +7,8 @@
 namespace glint {
 namespace {
 
-constexpr int k_points_most = 1 << 22;
-constexpr int k_elements_most = 1 << 20;
+constexpr int k_points_max = 1 << 22;
+constexpr int k_elements_max = 1 << 20;
 
 void check_capture(bool right, const std::string& what) {
   if (!right) throw InputError("path: " + what);
@@ -19,22 +19,22 @@ void check_capture(bool right, const std::string& what) {
 PathCapture::PathCapture(const CaptureSettings& settings) : settings_(settings) {
   check_capture(resampler_.begin(settings.stroke) == Reason::none,
                 "stroke settings; expected numbers above 0, turns of at most pi");
-  check_capture(settings.click_max.nanoseconds >= 0 && settings.click_reach_m >= 0,
+  check_capture(settings.click_max.nanoseconds >= 0 && settings.click_radius_m >= 0,
                 "click settings; expected 0 or more");
-  check_capture(settings.points_max >= 1 && settings.points_max <= k_points_most,
-                "points_max; expected 1 to " + std::to_string(k_points_most));
-  check_capture(settings.elements_max >= 1 && settings.elements_max <= k_elements_most,
-                "elements_max; expected 1 to " + std::to_string(k_elements_most));
+  check_capture(settings.points_max >= 1 && settings.points_max <= k_points_max,
+                "points_max; expected 1 to " + std::to_string(k_points_max));
+  check_capture(settings.elements_max >= 1 && settings.elements_max <= k_elements_max,
+                "elements_max; expected 1 to " + std::to_string(k_elements_max));
   const auto elements = static_cast<std::size_t>(settings.elements_max);
   points_.reserve(static_cast<std::size_t>(settings.points_max));
   elements_.reserve(elements);
-  standing_.reserve(elements);
+  active_.reserve(elements);
   changes_.reserve(2 * elements);  // each is added once, and deleted once apart from undos
 }
 
 void PathCapture::add(const ButtonEvent& event) {
   if (finished_) {
-    ++counts_.after_finish;
+    ++counts_.inputs_after_finish;
     return;
   }
   switch (event.button) {
@@ -55,7 +55,7 @@ void PathCapture::add(const ButtonEvent& event) {
 
 void PathCapture::add(const PoseSample& sample) {
   if (finished_) {
-    ++counts_.after_finish;
+    ++counts_.inputs_after_finish;
     return;
   }
   if (!held_ || sample.tick < pressed_) return;
@@ -73,7 +73,7 @@ void PathCapture::add(const PoseSample& sample) {
   if (reason == Reason::too_old) {
     ++counts_.gaps;
     end_stroke();
-    pieces_before_ = true;
+    split_by_gap_ = true;
     begin_stroke();
     reason = resampler_.add(pose);
   }
@@ -81,9 +81,10 @@ void PathCapture::add(const PoseSample& sample) {
     ++counts_.not_usable;
     return;
   }
-  ++counts_.taken;
+  ++counts_.poses_accepted;
   if (samples_++ == 0) began_ = pose.pose.translation;
-  left_reach_ = left_reach_ || (pose.pose.translation - began_).norm() > settings_.click_reach_m;
+  left_click_radius_ =
+      left_click_radius_ || (pose.pose.translation - began_).norm() > settings_.click_radius_m;
   take_points();
 }
 
@@ -96,16 +97,17 @@ void PathCapture::finish() {
 void PathCapture::press(Time time) {
   held_ = true;
   pressed_ = time;
-  pieces_before_ = false;
+  split_by_gap_ = false;
   begin_stroke();
 }
 
 void PathCapture::release(Time time) {
   held_ = false;
-  const bool click = !pieces_before_ && !left_reach_ && time - pressed_ <= settings_.click_max;
+  const bool click =
+      !split_by_gap_ && !left_click_radius_ && time - pressed_ <= settings_.click_max;
   if (click && static_cast<int>(points_.size()) > first_point_) {
     points_.resize(static_cast<std::size_t>(first_point_) + 1);
-    keep({PathKind::waypoint, first_point_, 1});
+    store({PathKind::waypoint, first_point_, 1});
     return;
   }
   end_stroke();
@@ -115,7 +117,7 @@ void PathCapture::begin_stroke() {
   (void)resampler_.begin(settings_.stroke);  // the constructor checked the settings
   first_point_ = static_cast<int>(points_.size());
   samples_ = 0;
-  left_reach_ = cut_ = false;
+  left_click_radius_ = truncated_ = false;
 }
 
 void PathCapture::end_stroke() {
@@ -123,10 +125,10 @@ void PathCapture::end_stroke() {
   take_points();
   const int count = static_cast<int>(points_.size()) - first_point_;
   if (count == 0) {
-    ++counts_.presses_in_vain;
+    ++counts_.presses_without_effect;
     return;
   }
-  keep({count == 1 ? PathKind::waypoint : PathKind::stroke, first_point_, count});
+  store({count == 1 ? PathKind::waypoint : PathKind::stroke, first_point_, count});
 }
 
 void PathCapture::take_points() {
@@ -134,55 +136,55 @@ void PathCapture::take_points() {
   for (;;) {
     const StrokeResampler::Next next = resampler_.next(point);
     if (next == StrokeResampler::Next::none) return;
-    if (next == StrokeResampler::Next::last_moves) {
-      if (!cut_) points_.back() = point;
+    if (next == StrokeResampler::Next::replace_last) {
+      if (!truncated_) points_.back() = point;
     } else if (static_cast<int>(points_.size()) < settings_.points_max) {
       points_.push_back(point);
     } else {
-      ++counts_.points_left_out;
-      cut_ = true;
+      ++counts_.points_over_capacity;
+      truncated_ = true;
     }
   }
 }
 
-void PathCapture::keep(Element element) {
+void PathCapture::store(Element element) {
   if (static_cast<int>(elements_.size()) == settings_.elements_max) {
-    ++counts_.strokes_left_out;
+    ++counts_.strokes_over_capacity;
     points_.resize(static_cast<std::size_t>(element.first));
     return;
   }
   const int number = static_cast<int>(elements_.size());
   elements_.push_back(element);
-  standing_.push_back(number);
+  active_.push_back(number);
   changes_.push_back({true, number});
 }
 
 void PathCapture::delete_last() {
-  if (held_ || standing_.empty()) {
-    ++counts_.presses_in_vain;
+  if (held_ || active_.empty()) {
+    ++counts_.presses_without_effect;
     return;
   }
-  changes_.push_back({false, standing_.back()});
-  standing_.pop_back();
+  changes_.push_back({false, active_.back()});
+  active_.pop_back();
 }
 
 void PathCapture::undo() {
   if (held_ || changes_.empty()) {
-    ++counts_.presses_in_vain;
+    ++counts_.presses_without_effect;
     return;
   }
   const Change change = changes_.back();
   changes_.pop_back();
   if (change.added) {
-    standing_.pop_back();
+    active_.pop_back();
   } else {
-    standing_.push_back(change.element);
+    active_.push_back(change.element);
   }
 }
 
 DrawnPath PathCapture::path() const {
   DrawnPath path;
-  for (const int number : standing_) {
+  for (const int number : active_) {
     const Element& element = elements_[static_cast<std::size_t>(number)];
     const auto first = points_.begin() + element.first;
     path.push_back({element.kind, {first, first + element.count}});

@@ -24,22 +24,22 @@ namespace glint {
 struct CaptureSettings {
   StrokeSettings stroke;
   Duration click_max = milliseconds(300);  // limits of a click: duration, and distance of the tip
-  double click_reach_m = 0.005;
+  double click_radius_m = 0.005;
   int points_max = 1 << 16;  // of all elements; includes deleted ones, for undo
   int elements_max = 4096;   // likewise
 };
 
 struct CaptureCounts {
-  std::int64_t poses = 0;             // while draw was held
-  std::int64_t taken = 0;             // accepted into strokes
-  std::int64_t not_measured = 0;      // rejected: predicted or lost
-  std::int64_t not_in_robot = 0;      // rejected: not in the robot's frame
-  std::int64_t not_usable = 0;        // rejected: stamp not rising, a jump, not finite
-  std::int64_t gaps = 0;              // strokes ended by a gap in the poses
-  std::int64_t presses_in_vain = 0;   // draw without a pose; delete_last, undo without effect
-  std::int64_t points_left_out = 0;   // beyond points_max
-  std::int64_t strokes_left_out = 0;  // beyond elements_max
-  std::int64_t after_finish = 0;      // poses and events
+  std::int64_t poses = 0;                   // while draw was held
+  std::int64_t poses_accepted = 0;          // accepted into strokes
+  std::int64_t not_measured = 0;            // rejected: predicted or lost
+  std::int64_t not_in_robot = 0;            // rejected: not in the robot's frame
+  std::int64_t not_usable = 0;              // rejected: stamp not rising, a jump, not finite
+  std::int64_t gaps = 0;                    // strokes ended by a gap in the poses
+  std::int64_t presses_without_effect = 0;  // draw without a pose; delete_last, undo without effect
+  std::int64_t points_over_capacity = 0;    // beyond points_max
+  std::int64_t strokes_over_capacity = 0;   // beyond elements_max
+  std::int64_t inputs_after_finish = 0;     // poses and events
 };
 
 class PathCapture {
@@ -75,13 +75,13 @@ class PathCapture {
   void take_points();
   void delete_last();
   void undo();
-  void keep(Element element);
+  void store(Element element);
 
   CaptureSettings settings_;
   StrokeResampler resampler_;
   std::vector<UncertainPose> points_;
   std::vector<Element> elements_;  // all elements, deleted ones too
-  std::vector<int> standing_;      // elements that are not deleted
+  std::vector<int> active_;        // elements that are not deleted
   std::vector<Change> changes_;
   CaptureCounts counts_;
   bool held_ = false, finished_ = false;
@@ -90,9 +90,9 @@ class PathCapture {
   int first_point_ = 0;
   std::int64_t samples_ = 0;
   Vector3 began_ = Vector3::Zero();
-  bool left_reach_ = false;
-  bool cut_ = false;            // points of it exceeded the capacity
-  bool pieces_before_ = false;  // a gap ended a stroke of the same press
+  bool left_click_radius_ = false;
+  bool truncated_ = false;     // points of it exceeded the capacity
+  bool split_by_gap_ = false;  // a gap ended a stroke of the same press
 };
 
 }  // namespace glint

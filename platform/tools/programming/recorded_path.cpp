@@ -56,7 +56,7 @@ std::vector<ButtonEvent> recorded_events(const std::string& recording, ReadToler
   return events;
 }
 
-std::string nothing_taken(const CaptureCounts& counts) {
+std::string no_accepted_pose_text(const CaptureCounts& counts) {
   return ": nothing was drawn: of " + std::to_string(counts.poses) +
          " poses while the button was held " + std::to_string(counts.not_measured) +
          " were not measured and " + std::to_string(counts.not_in_robot) +
@@ -99,7 +99,8 @@ RecordedPath recorded_path(const std::string& recording, const RecordedPathOptio
   result.losses = reader.losses();
   result.path = capture.path();
   result.counts = capture.counts();
-  if (result.counts.taken == 0) throw InputError(recording + nothing_taken(result.counts));
+  if (result.counts.poses_accepted == 0)
+    throw InputError(recording + no_accepted_pose_text(result.counts));
   return result;
 }
 

@@ -71,7 +71,7 @@ std::vector<Move> moves_of(const DrawnPath& path) {
   return moves;
 }
 
-double way_between(const Move& a, const Move& b) {
+double distance_between(const Move& a, const Move& b) {
   return (a.to->pose.translation - b.to->pose.translation).norm();
 }
 
@@ -79,8 +79,8 @@ double way_between(const Move& a, const Move& b) {
 // too, by up to 1.5 steps along the path.
 double blend_at(const std::vector<Move>& moves, std::size_t i, double most) {
   if (moves[i].stops || i == 0 || i + 1 == moves.size()) return 0;
-  const double half =
-      0.5 * std::min(way_between(moves[i - 1], moves[i]), way_between(moves[i], moves[i + 1]));
+  const double half = 0.5 * std::min(distance_between(moves[i - 1], moves[i]),
+                                     distance_between(moves[i], moves[i + 1]));
   return std::max(0.0, std::floor(std::min(most, half - k_step) / k_step) * k_step);
 }
 

@@ -111,12 +111,12 @@ CameraModel read_camera_info(const std::string& path) {
                      ": k has no focal length; expected fx, 0, cx, 0, fy, cy, 0, 0, 1");
   }
   const Entry* d = find(entries, {"d", "D", "distortion_coefficients/data"});
-  bool bent = false;
+  bool distorted = false;
   for (std::size_t i = 0; d != nullptr && i < d->numbers.size(); ++i) {
-    bent = bent || d->numbers[i] != 0;
+    distorted = distorted || d->numbers[i] != 0;
     if (i < camera.distortion.size()) camera.distortion[i] = d->numbers[i];
   }
-  if (!bent) return camera;
+  if (!distorted) return camera;
   const Entry* model = find(entries, {"distortion_model"});
   const std::string name = model == nullptr ? "" : model->text;
   const bool brown = name == "plumb_bob" && d->numbers.size() <= 5;

@@ -20,12 +20,12 @@ void sample_surface(const Surface& surface, int count, std::vector<Vector3>& poi
     areas.push_back(0.5 * static_cast<double>((t.b - t.a).cross(t.c - t.a).norm()));
   }
   const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
-  double walked = 0;
+  double cumulative_area = 0;
   int next = 0;
   for (std::size_t f = 0; f < areas.size(); ++f) {
-    walked += areas[f];
+    cumulative_area += areas[f];
     const Triangle t = surface.triangle(f);
-    for (; next < count && (next + 0.5) * total / count < walked; ++next) {
+    for (; next < count && (next + 0.5) * total / count < cumulative_area; ++next) {
       // Two-dimensional R sequence, folded into the triangle.
       double a = std::fmod(0.7548776662466927 * next, 1.0);
       double b = std::fmod(0.5698402909980532 * next, 1.0);
@@ -71,7 +71,7 @@ std::vector<Vector3f> normals_of(const SceneView& view) {
   return normals;
 }
 
-std::vector<int> mask_cells_of(const CoarsePicture& picture) {
+std::vector<int> mask_cells_of(const CoarseImage& picture) {
   const SceneView& view = picture.view;
   std::vector<int> cells, on(static_cast<std::size_t>(picture.cells()));
   for (std::size_t i = 0; i < view.mask.size(); ++i) {
@@ -86,19 +86,19 @@ std::vector<int> mask_cells_of(const CoarsePicture& picture) {
 
 }  // namespace
 
-int CoarsePicture::cells() const {
+int CoarseImage::cells() const {
   const int across = (view.camera.width + k_cell_pixels - 1) / k_cell_pixels;
   return across * ((view.camera.height + k_cell_pixels - 1) / k_cell_pixels);
 }
 
-int CoarsePicture::cell_of(int pixel) const {
+int CoarseImage::cell_of(int pixel) const {
   const int across = (view.camera.width + k_cell_pixels - 1) / k_cell_pixels;
   return pixel / view.camera.width / k_cell_pixels * across +
          pixel % view.camera.width / k_cell_pixels;
 }
 
-CoarsePicture coarse_picture(const SceneFrame& frame, int points) {
-  CoarsePicture picture{frame.view(), {}, {}, {}, {}};
+CoarseImage coarse_image(const SceneFrame& frame, int points) {
+  CoarseImage picture{frame.view(), {}, {}, {}, {}};
   if (!frame.cloud.points.empty()) {
     sample_cloud(frame.cloud.cloud(), points, picture.points, picture.normals);
   } else {

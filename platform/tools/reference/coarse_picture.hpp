@@ -10,7 +10,7 @@ namespace glint {
 
 inline constexpr int k_cell_pixels = 8;  // a cell's side
 
-struct CoarsePicture {
+struct CoarseImage {
   SceneView view;
   std::vector<Vector3> points, normals;  // of the robot, base frame
   std::vector<Vector3f> scene_normals;   // of each pixel, unit length; zero at edges
@@ -21,6 +21,6 @@ struct CoarsePicture {
 };
 
 // Samples this many points evenly over the robot's surface. Borrows the frame's memory.
-[[nodiscard]] CoarsePicture coarse_picture(const SceneFrame& frame, int points);
+[[nodiscard]] CoarseImage coarse_image(const SceneFrame& frame, int points);
 
 }  // namespace glint

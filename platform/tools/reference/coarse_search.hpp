@@ -29,11 +29,11 @@ inline constexpr std::size_t k_coarse_aligned = 600;
 // Limits of each coordinate of the base's position, and of each rotation about a fixed axis,
 // relative to the initial pose.
 struct SearchRange {
-  double shift_m = 0.4;
-  double turn_rad = 0.6981317007977318;  // 40 deg
+  double translation_m = 0.4;
+  double rotation_rad = 0.6981317007977318;  // 40 deg
 
   // Returns whether a pose is no farther from `start` than a corner of the range.
-  [[nodiscard]] bool holds(const Pose& start, const Pose& pose) const;
+  [[nodiscard]] bool contains(const Pose& start, const Pose& pose) const;
 };
 
 // Returns `start`, then k_coarse_poses poses that fill the range evenly.
@@ -59,14 +59,14 @@ class CoarseSearch {
 
  private:
   // Transforms an image's points and computes the nearest depth in each cell.
-  void place(const CoarsePicture& picture, const Pose& T_world_base);
+  void project_points(const CoarseImage& picture, const Pose& T_world_base);
   [[nodiscard]] Pose aligned(Pose T_world_base);
   [[nodiscard]] bool move(Pose& T_world_base, double gate_m);
 
-  std::vector<CoarsePicture> pictures_;
-  std::vector<Vector3> placed_;     // points of the image of the last place()
-  std::vector<int> pixels_;         // of the placed points; -1: outside, -2: hidden
-  std::vector<float> cell_depths_;  // 0: no point
+  std::vector<CoarseImage> pictures_;
+  std::vector<Vector3> points_camera_;  // points of the image of the last project_points()
+  std::vector<int> pixels_;             // of the projected points; -1: outside, -2: hidden
+  std::vector<float> cell_depths_;      // 0: no point
 };
 
 }  // namespace glint

@@ -44,8 +44,8 @@ NpyNumbers npy_picture(const std::string& path, const CameraModel& camera) {
   return array;
 }
 
-Picture png_picture(const std::string& path, const CameraModel& camera) {
-  Picture picture = read_png(path, "a PNG picture");
+Image png_picture(const std::string& path, const CameraModel& camera) {
+  Image picture = read_png(path, "a PNG picture");
   check_size(path, static_cast<std::size_t>(picture.width),
              static_cast<std::size_t>(picture.height), camera);
   return picture;
@@ -66,7 +66,7 @@ DepthImage read_depth(const std::string& path, const CameraModel& camera) {
     const double scale = array.integer ? 1e-3 : 1;
     for (const double value : array.values) out.z_m.push_back(depth_of(value * scale));
   } else if (kind == ".png") {
-    const Picture picture = png_picture(path, camera);
+    const Image picture = png_picture(path, camera);
     if (picture.channels != 1 || picture.bits != 16) {
       throw InputError(path + ": expected one channel of 16 bit, millimetres");
     }
@@ -102,12 +102,12 @@ bool is_cloud_file(const std::string& path) {
   return kind == ".pcd" || kind == ".ply";
 }
 
-MaskPicture read_mask(const std::string& path, const CameraModel& camera) {
-  MaskPicture out{camera.width, camera.height, {}};
+MaskImage read_mask(const std::string& path, const CameraModel& camera) {
+  MaskImage out{camera.width, camera.height, {}};
   if (kind_of(path) == ".npy") {
     for (const double value : npy_picture(path, camera).values) out.on.push_back(value != 0);
   } else if (kind_of(path) == ".png") {
-    const Picture picture = png_picture(path, camera);
+    const Image picture = png_picture(path, camera);
     if (picture.bits != 8) throw InputError(path + ": expected a mask of 8 bit");
     const auto channels = static_cast<std::size_t>(picture.channels);
     for (std::size_t i = 0; i < picture.values.size(); i += channels) {

@@ -29,12 +29,12 @@ inline constexpr float k_depth_max_m = 20;
 // k_depth_max_m. Throws InputError if there are none.
 [[nodiscard]] std::vector<Vector3f> read_depth_points(const std::string& path);
 
-struct MaskPicture {
+struct MaskImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> on;  // row by row: 0 or 1
 };
 
 // Reads .png or .npy of the camera's size: nonzero is the robot.
-[[nodiscard]] MaskPicture read_mask(const std::string& path, const CameraModel& camera);
+[[nodiscard]] MaskImage read_mask(const std::string& path, const CameraModel& camera);
 
 }  // namespace glint

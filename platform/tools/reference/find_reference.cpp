@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_coarse_ends = 8, k_turned_ends = 3;
+constexpr std::size_t k_coarse_poses_aligned = 8, k_rotated_poses_aligned = 3;
 constexpr double k_coarse_apart_m = 0.06;
 // Coarse poses are some centimetres off: those with half of the best score are aligned, too.
 constexpr double k_coarse_share = 0.5;
@@ -25,7 +25,7 @@ Quaternion turn_about_z(double radians) {
 
 // Rotations about the base's own z by eighths: a robot's base is round, and its links are nearly
 // symmetric end to end.
-std::vector<Pose> turned_starts(const Pose& from) {
+std::vector<Pose> rotated_initial_poses(const Pose& from) {
   std::vector<Pose> starts;
   for (int eighth = 1; eighth < 8; ++eighth) {
     starts.push_back(
@@ -63,10 +63,10 @@ class Search {
     ++starts_;
     c.alignment = align_model(views_, start, fewer, scratch_);
     const Pose& T = c.alignment.T_world_base;
-    c.judgement = judge_alignment(views_, T, settings_.judge, scratch_);
-    const double granted_m = 2 * settings_.shared_errors.depth_sigma_m;
+    c.judgement = score_alignment(views_, T, settings_.judge, scratch_);
+    const double tolerance_m = 2 * settings_.shared_errors.depth_sigma_m;
     c.surface_score = coarse_.score(T, k_end_gate_m);
-    c.surface_score_granted = coarse_.score(T, k_end_gate_m + granted_m);
+    c.surface_score_tolerant = coarse_.score(T, k_end_gate_m + tolerance_m);
     return c;
   }
 
@@ -74,16 +74,15 @@ class Search {
   [[nodiscard]] int starts() const { return starts_; }
 
   // Returns why a single link or image rejects a pose that all together accept; empty if none does.
-  [[nodiscard]] std::string closer_objection(const Pose& T_world_base) {
-    const LinkJudgement links =
-        judge_links(views_, links_, T_world_base, settings_.judge, scratch_);
-    std::string why = link_objection(links, settings_);
-    for (std::size_t v = 0; v < views_.size() && views_.size() > 1 && why.empty(); ++v) {
-      const Judgement picture =
-          judge_alignment(std::span(views_).subspan(v, 1), T_world_base, settings_.judge, scratch_);
-      why = picture_objection(frames_[v].name, picture, settings_);
+  [[nodiscard]] std::string part_rejection_reason(const Pose& T_world_base) {
+    const LinkScores links = score_links(views_, links_, T_world_base, settings_.judge, scratch_);
+    std::string reason = link_rejection_reason(links, settings_);
+    for (std::size_t v = 0; v < views_.size() && views_.size() > 1 && reason.empty(); ++v) {
+      const AlignmentScore picture =
+          score_alignment(std::span(views_).subspan(v, 1), T_world_base, settings_.judge, scratch_);
+      reason = image_rejection_reason(frames_[v].name, picture, settings_);
     }
-    return why;
+    return reason;
   }
 
   // Covariance of errors that neighbouring pixels share; with too few patches, keeps that of
@@ -98,8 +97,8 @@ class Search {
   // Adds errors that a whole image shares, and the scatter of the poses of single images.
   void add_shared_errors(ModelAlignment& alignment) {
     if (alignment.reason != Reason::none || settings_.alignment.gate_count < 1) return;
-    const Result<Matrix6> shared = shared_error_covariance(views_, alignment.T_world_base, gate_m(),
-                                                           settings_.shared_errors, scratch_);
+    const Result<Matrix6> shared = consider_covariance(views_, alignment.T_world_base, gate_m(),
+                                                       settings_.shared_errors, scratch_);
     if (shared) alignment.covariance += shared.value;
     alignment.covariance += scatter_of_pictures(alignment.T_world_base);
   }
@@ -141,17 +140,17 @@ class Search {
 };
 
 // Converged poses from the rough pose and about it, best first.
-std::vector<Candidate> ends_of(Search& search, const Pose& seed,
-                               const FindReferenceSettings& settings) {
-  std::vector<Candidate> ends{search.aligned(seed, 0)};
-  if (!settings.other_starts) return ends;
+std::vector<Candidate> converged_poses(Search& search, const Pose& initial_guess,
+                                       const FindReferenceSettings& settings) {
+  std::vector<Candidate> ends{search.aligned(initial_guess, 0)};
+  if (!settings.search_alternatives) return ends;
   CoarseSearch& coarse = search.coarse();
   const auto add = [&](const Pose& start, int gates_skipped) {
     const int skipped = std::clamp(settings.alignment.gate_count - 1, 0, gates_skipped);
     const Candidate end = search.aligned(start, skipped);
     const auto same = std::find_if(ends.begin(), ends.end(), [&](const Candidate& other) {
       return coarse.surface_motion_m(end.alignment.T_world_base, other.alignment.T_world_base) <
-             settings.elsewhere_m;
+             settings.distinct_min_m;
     });
     if (same == ends.end()) {
       ends.push_back(end);
@@ -165,16 +164,16 @@ std::vector<Candidate> ends_of(Search& search, const Pose& seed,
       if (pose.score >= k_coarse_share * best[0].score) add(pose.T_world_base, 1);
     }
   };
-  add(seed, 2);
-  add_best(spread_poses(seed, settings.range), k_coarse_ends);
+  add(initial_guess, 2);
+  add_best(spread_poses(initial_guess, settings.range), k_coarse_poses_aligned);
   const auto in_range = [&](const Candidate& end) {
-    return settings.range.holds(seed, end.alignment.T_world_base);
+    return settings.range.contains(initial_guess, end.alignment.T_world_base);
   };
   std::erase_if(ends, [&](const Candidate& end) { return !in_range(end); });
   const auto first = [&](const Candidate& a, const Candidate& b) { return better(a, b, settings); };
   std::stable_sort(ends.begin(), ends.end(), first);
   if (ends.empty()) return ends;
-  add_best(turned_starts(ends[0].alignment.T_world_base), k_turned_ends);
+  add_best(rotated_initial_poses(ends[0].alignment.T_world_base), k_rotated_poses_aligned);
   std::stable_sort(ends.begin(), ends.end(), first);
   // A rotated pose outside the range can only be an alternative.
   std::stable_partition(ends.begin(), ends.end(), in_range);
@@ -182,7 +181,7 @@ std::vector<Candidate> ends_of(Search& search, const Pose& seed,
 }
 
 // Returns whether there is no mask and no camera is more than 0.1 m from the first.
-bool from_one_place(const std::vector<SceneFrame>& frames) {
+bool from_one_position(const std::vector<SceneFrame>& frames) {
   constexpr double near_m = 0.1;
   return std::all_of(frames.begin(), frames.end(), [&](const SceneFrame& frame) {
     const Vector3 apart =
@@ -204,49 +203,51 @@ std::string name_of(ReferenceVerdict verdict) {
   }
 }
 
-Pose pose_of_seed(const std::vector<double>& seed) {
-  const SineCosine r = sine_cosine(0.5 * seed[3]), p = sine_cosine(0.5 * seed[4]),
-                   y = sine_cosine(0.5 * seed[5]);
+Pose pose_from_xyz_rpy(const std::vector<double>& xyz_rpy) {
+  const SineCosine r = sine_cosine(0.5 * xyz_rpy[3]), p = sine_cosine(0.5 * xyz_rpy[4]),
+                   y = sine_cosine(0.5 * xyz_rpy[5]);
   const Quaternion roll(r.cosine, r.sine, 0, 0), pitch(p.cosine, 0, p.sine, 0),
       yaw(y.cosine, 0, 0, y.sine);
-  return {(yaw * pitch * roll).normalized(), {seed[0], seed[1], seed[2]}};
+  return {(yaw * pitch * roll).normalized(), {xyz_rpy[0], xyz_rpy[1], xyz_rpy[2]}};
 }
 
-Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
+Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& initial_guess,
                          const FindReferenceSettings& given) {
   FindReferenceSettings settings = given;
-  const bool alone = from_one_place(frames);
+  const bool alone = from_one_position(frames);
   if (alone) {
-    settings.visible_share_min = std::max(given.visible_share_min, given.visible_share_min_alone);
+    settings.visible_share_min =
+        std::max(given.visible_share_min, given.visible_share_min_one_position);
   }
   Search search(frames, settings);
-  const std::vector<Candidate> ends = ends_of(search, seed, settings);
+  const std::vector<Candidate> ends = converged_poses(search, initial_guess, settings);
   Reference reference;
   if (ends.empty()) {
-    reference.found = search.aligned(seed, 0);
-    reference.why = "no pose of the searched range explains the scene";
+    reference.found = search.aligned(initial_guess, 0);
+    reference.reason = "no pose of the searched range explains the scene";
     return reference;
   }
   reference.found = ends[0];
   reference.starts = search.starts();
   for (std::size_t i = 1; i < ends.size(); ++i) {
-    if (rivals(ends[i], reference.found, settings)) reference.rivals.push_back(ends[i]);
+    if (is_alternative(ends[i], reference.found, settings))
+      reference.alternatives.push_back(ends[i]);
   }
   search.spread_covariance(reference.found.alignment);
-  reference.why = objection(reference.found, settings);
-  if (reference.why.empty()) {
-    reference.why = search.closer_objection(reference.found.alignment.T_world_base);
+  reference.reason = rejection_reason(reference.found, settings);
+  if (reference.reason.empty()) {
+    reference.reason = search.part_rejection_reason(reference.found.alignment.T_world_base);
   }
   search.add_shared_errors(reference.found.alignment);
-  if (!reference.why.empty()) return reference;
-  if (!reference.rivals.empty()) {
+  if (!reference.reason.empty()) return reference;
+  if (!reference.alternatives.empty()) {
     reference.verdict = ReferenceVerdict::ambiguous;
-    reference.why = "another pose explains the scene nearly as well";
+    reference.reason = "another pose explains the scene nearly as well";
     return reference;
   }
-  if (alone && !settings.other_starts) {
+  if (alone && !settings.search_alternatives) {
     reference.verdict = ReferenceVerdict::ambiguous;
-    reference.why = "one place without a mask, and no rival was searched";
+    reference.reason = "one place without a mask, and no rival was searched";
     return reference;
   }
   reference.verdict = ReferenceVerdict::accepted;

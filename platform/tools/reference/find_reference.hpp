@@ -24,21 +24,21 @@ enum class ReferenceVerdict { accepted, ambiguous, refused };
 
 struct FindReferenceSettings {
   AlignmentSettings alignment;
-  JudgeSettings judge;
-  SharedErrors shared_errors;
+  ScoreSettings judge;
+  SystematicErrors shared_errors;
   double inlier_share_min = 0.85;
   double seen_through_share_max = 0.08;
   // A smaller visible share does not constrain the rest of the robot.
   double visible_share_min = 0.4;
   // For one camera position without a mask: an occluder may be mistaken for the robot.
-  double visible_share_min_alone = 0.75;
-  // Of worth() (with the outline's factor), per visible share: wrong poses of simulated scenes
+  double visible_share_min_one_position = 0.75;
+  // Of pose_score() (with the outline's factor), per visible share: wrong poses of simulated scenes
   // reach 0.14, right ones 0.19.
-  double worth_min = 0.15;
+  double score_min = 0.15;
   // Flat objects explain a robot that lies on them, but extend beyond its outline. Above this
   // outline share the outline's factor is 1: twice the maximum of any such pose in simulated
   // scenes.
-  double outline_share_enough = 0.34;
+  double outline_share_full = 0.34;
   double outline_share_min = 0.12;  // flat objects have less
   double mask_share_min = 0.7;      // share of the mask's pixels that the model covers
   double sigma_max_m = 0.02;        // of the base's position, least certain axis
@@ -49,36 +49,37 @@ struct FindReferenceSettings {
   double link_explained_min = 0.5;
   double link_seen_through_max = 0.35;
   // For each of several images by itself.
-  double picture_inlier_share_min = 0.7;
-  double picture_seen_through_max = 0.16;
+  double image_inlier_share_min = 0.7;
+  double image_seen_through_max = 0.16;
   // An alternative pose with this share of the best score makes the result ambiguous. Its score
   // includes an allowance of twice the depth error shared by a whole image.
-  double rival_share = 0.7;
-  double elsewhere_m = 0.04;  // rms over the robot's surface; nearer poses are the same
-  SearchRange range;          // about the rough pose
-  bool other_starts = true;
+  double alternative_share = 0.7;
+  double distinct_min_m = 0.04;  // rms over the robot's surface; nearer poses are the same
+  SearchRange range;             // about the rough pose
+  bool search_alternatives = true;
 };
 
 struct Candidate {
   ModelAlignment alignment;
-  Judgement judgement;
+  AlignmentScore judgement;
   // CoarseSearch::score, and the same with the allowance for shared depth errors.
-  double surface_score = 0, surface_score_granted = 0;
+  double surface_score = 0, surface_score_tolerant = 0;
 };
 
 struct Reference {
   Candidate found;
   ReferenceVerdict verdict = ReferenceVerdict::refused;
-  std::string why;                // reason of a verdict other than "accepted"
-  std::vector<Candidate> rivals;  // alternative poses that explain the scene nearly as well
-  int starts = 0;                 // number of alignments
+  std::string reason;                   // reason of a verdict other than "accepted"
+  std::vector<Candidate> alternatives;  // alternative poses that explain the scene nearly as well
+  int starts = 0;                       // number of alignments
 };
 
-// seed: initial guess of T_camera_base. Deterministic: equal frames and seed give equal bits.
-[[nodiscard]] Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
+// initial_guess: of T_camera_base. Deterministic: equal frames and guess give equal bits.
+[[nodiscard]] Reference find_reference(const std::vector<SceneFrame>& frames,
+                                       const Pose& initial_guess,
                                        const FindReferenceSettings& settings);
 
 // Input: x, y, z, roll, pitch, yaw in metres and radians, about fixed axes, as in URDF.
-[[nodiscard]] Pose pose_of_seed(const std::vector<double>& seed);
+[[nodiscard]] Pose pose_from_xyz_rpy(const std::vector<double>& xyz_rpy);
 
 }  // namespace glint

@@ -16,30 +16,31 @@ std::string percent(double share) {
 }
 
 double outline_factor(const Candidate& candidate, const FindReferenceSettings& settings) {
-  return std::min(1.0, candidate.judgement.outline_share() / settings.outline_share_enough);
+  return std::min(1.0, candidate.judgement.outline_share() / settings.outline_share_full);
 }
 
 }  // namespace
 
-double worth(const Candidate& candidate, const FindReferenceSettings& settings) {
+double pose_score(const Candidate& candidate, const FindReferenceSettings& settings) {
   return candidate.surface_score * outline_factor(candidate, settings);
 }
 
-bool rivals(const Candidate& other, const Candidate& found, const FindReferenceSettings& settings) {
+bool is_alternative(const Candidate& other, const Candidate& found,
+                    const FindReferenceSettings& settings) {
   if (other.alignment.reason != Reason::none) return false;
-  return other.surface_score_granted * outline_factor(other, settings) >=
-         settings.rival_share * worth(found, settings);
+  return other.surface_score_tolerant * outline_factor(other, settings) >=
+         settings.alternative_share * pose_score(found, settings);
 }
 
-std::string objection(const Candidate& candidate, const FindReferenceSettings& settings) {
-  const Judgement& j = candidate.judgement;
+std::string rejection_reason(const Candidate& candidate, const FindReferenceSettings& settings) {
+  const AlignmentScore& j = candidate.judgement;
   if (candidate.alignment.reason != Reason::none) {
     return "too little of the robot is seen to fix a pose";
   }
   if (j.visible_share() < settings.visible_share_min) {
     return "only " + percent(j.visible_share()) + " of the robot could be seen; wanted " +
            percent(settings.visible_share_min) +
-           (settings.visible_share_min < settings.visible_share_min_alone
+           (settings.visible_share_min < settings.visible_share_min_one_position
                 ? ""
                 : " from one place without a mask");
   }
@@ -57,11 +58,11 @@ std::string objection(const Candidate& candidate, const FindReferenceSettings& s
            " of the robot's outline, as flat things do; at most " +
            percent(1 - settings.outline_share_min);
   }
-  const double worth_min = settings.worth_min * j.visible_share();
-  if (worth(candidate, settings) < worth_min) {
+  const double score_min = settings.score_min * j.visible_share();
+  if (pose_score(candidate, settings) < score_min) {
     return "the scene explains too little of the robot's surface, or goes on beside its outline: "
            "worth " +
-           percent(worth(candidate, settings)) + "; wanted " + percent(worth_min);
+           percent(pose_score(candidate, settings)) + "; wanted " + percent(score_min);
   }
   if (j.mask_pixels > 0 && j.mask_share() < settings.mask_share_min) {
     return "the robot covers only " + percent(j.mask_share()) + " of the mask; wanted " +
@@ -75,14 +76,14 @@ std::string objection(const Candidate& candidate, const FindReferenceSettings& s
   return "";
 }
 
-std::string link_objection(const LinkJudgement& links, const FindReferenceSettings& settings) {
+std::string link_rejection_reason(const LinkScores& links, const FindReferenceSettings& settings) {
   int all = 0;
   for (const LinkCounts& link : links.links) all += link.looked_at;
   for (std::size_t l = 0; l < links.links.size(); ++l) {
     const LinkCounts& link = links.links[l];
     if (link.looked_at == 0 || link.looked_at < settings.link_pixels_min * all) continue;
     const double explained = static_cast<double>(link.explained) / link.looked_at;
-    const double through = static_cast<double>(link.seen_through) / link.looked_at;
+    const double through = static_cast<double>(link.free_space_violations) / link.looked_at;
     const std::string name = "link " + std::to_string(l) + " does not fit its joint values: ";
     if (explained < settings.link_explained_min) {
       return name + "only " + percent(explained) + " of it lies at the scene; wanted " +
@@ -96,23 +97,24 @@ std::string link_objection(const LinkJudgement& links, const FindReferenceSettin
   return "";
 }
 
-std::string picture_objection(const std::string& name, const Judgement& picture,
-                              const FindReferenceSettings& settings) {
-  if (picture.inlier_share() >= settings.picture_inlier_share_min &&
-      picture.unhidden_seen_through_share() <= settings.picture_seen_through_max) {
+std::string image_rejection_reason(const std::string& name, const AlignmentScore& picture,
+                                   const FindReferenceSettings& settings) {
+  if (picture.inlier_share() >= settings.image_inlier_share_min &&
+      picture.unhidden_seen_through_share() <= settings.image_seen_through_max) {
     return "";
   }
   return name +
          ": the pose of all pictures does not fit this one: " + percent(picture.inlier_share()) +
          " of the robot lies at the scene, it is seen through " +
          percent(picture.unhidden_seen_through_share()) + "; wanted " +
-         percent(settings.picture_inlier_share_min) + " and at most " +
-         percent(settings.picture_seen_through_max);
+         percent(settings.image_inlier_share_min) + " and at most " +
+         percent(settings.image_seen_through_max);
 }
 
 bool better(const Candidate& a, const Candidate& b, const FindReferenceSettings& settings) {
-  const bool a_good = objection(a, settings).empty(), b_good = objection(b, settings).empty();
-  return a_good == b_good ? worth(a, settings) > worth(b, settings) : a_good;
+  const bool a_good = rejection_reason(a, settings).empty(),
+             b_good = rejection_reason(b, settings).empty();
+  return a_good == b_good ? pose_score(a, settings) > pose_score(b, settings) : a_good;
 }
 
 }  // namespace glint

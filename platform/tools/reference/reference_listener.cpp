@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr Duration k_look_again = milliseconds(50);  // polling period, and period of on_wait
+constexpr Duration k_poll_period = milliseconds(50);  // polling period, and period of on_wait
 
 // Usual publisher of a topic, and the option that replaces it.
 std::string source_of(const std::string& topic) {
@@ -44,24 +44,25 @@ std::string ReferenceListener::description() {
   return inputs_.description().value().urdf;
 }
 
-HeardPlace ReferenceListener::place(const std::vector<std::string>& inputs) {
+ReceivedInputs ReferenceListener::wait_for_inputs(const std::vector<std::string>& inputs) {
   all_joints_ = inputs.empty();
   wait_until([&] {
     if (needs_.joints && inputs_.joints().sample()) note_joints(inputs);
-    return (all_joints_ || !needs_.joints) && (inputs_.guess().version() > 0 || !needs_.guess);
+    return (all_joints_ || !needs_.joints) &&
+           (inputs_.initial_pose().version() > 0 || !needs_.guess);
   });
-  return {positions_, inputs_.guess().value()};
+  return {positions_, inputs_.initial_pose().value()};
 }
 
 // Polls once even after the limit: loading a robot takes time, and messages may be waiting.
 template <class Done>
 void ReferenceListener::wait_until(Done done) {
   while (true) {
-    inputs_.read(k_look_again);
-    (void)inputs_.guess().sample();
+    inputs_.read(k_poll_period);
+    (void)inputs_.initial_pose().sample();
     if (done()) return;
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start_;
-    if (waited.count() > limit_.seconds()) refuse();
+    if (waited.count() > limit_.seconds()) throw_timeout();
     std::string topics;
     for (const std::string& topic : missing()) topics += (topics.empty() ? "" : ", ") + topic;
     if (on_wait_) on_wait_(waited.count(), topics);
@@ -72,7 +73,7 @@ void ReferenceListener::note_joints(const std::vector<std::string>& inputs) {
   std::vector<double> positions(inputs.size());
   const std::size_t found = positions_of(inputs_.joints().value(), inputs, positions);
   if (found < inputs.size()) {
-    lacking_ = inputs[found];
+    missing_joint_ = inputs[found];
     return;
   }
   all_joints_ = true;
@@ -80,24 +81,24 @@ void ReferenceListener::note_joints(const std::vector<std::string>& inputs) {
 }
 
 std::vector<std::string> ReferenceListener::missing() const {
-  const HeardCounts counts = inputs_.counts();
+  const ReceivedCounts counts = inputs_.counts();
   std::vector<std::string> topics;
   if (needs_.description && counts.descriptions == 0)
     topics.emplace_back(k_robot_description_topic);
-  const bool joints = all_joints_ || (lacking_.empty() && counts.joints > 0);
+  const bool joints = all_joints_ || (missing_joint_.empty() && counts.joints > 0);
   if (needs_.joints && !joints) topics.emplace_back(k_joint_states_topic);
   if (needs_.guess && counts.guesses == 0) topics.emplace_back(k_initial_pose_topic);
   return topics;
 }
 
-void ReferenceListener::refuse() const {
+void ReferenceListener::throw_timeout() const {
   char head[96];
   std::snprintf(head, sizeof head, "--listen: %.1f s on ", limit_.seconds());
   std::string text = head + settings_.interface + ", domain " + std::to_string(settings_.domain);
   for (const std::string& topic : missing()) {
-    const bool partly = topic == k_joint_states_topic && !lacking_.empty();
+    const bool partly = topic == k_joint_states_topic && !missing_joint_.empty();
     text += "; " + topic +
-            (partly ? ": no state with one position of joint '" + lacking_ +
+            (partly ? ": no state with one position of joint '" + missing_joint_ +
                           "'; expected one message with all of the robot's joints"
                     : ": nothing heard; " + source_of(topic));
   }

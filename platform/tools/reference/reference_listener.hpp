@@ -19,9 +19,9 @@ struct ReferenceNeeds {
   bool description = false, joints = false, guess = false;
 };
 
-struct HeardPlace {
+struct ReceivedInputs {
   std::vector<double> positions;  // one per input of the robot, if joints are needed
-  HeardGuess guess;
+  ReceivedInitialPose guess;
 };
 
 class ReferenceListener {
@@ -36,14 +36,14 @@ class ReferenceListener {
   // Each waits for its needed inputs. Throws InputError after the limit: names every missing topic,
   // with its usual publisher or the option that replaces it.
   [[nodiscard]] std::string description();
-  [[nodiscard]] HeardPlace place(const std::vector<std::string>& inputs);
+  [[nodiscard]] ReceivedInputs wait_for_inputs(const std::vector<std::string>& inputs);
 
  private:
   template <class Done>
   void wait_until(Done done);
   void note_joints(const std::vector<std::string>& inputs);
   [[nodiscard]] std::vector<std::string> missing() const;
-  [[noreturn]] void refuse() const;
+  [[noreturn]] void throw_timeout() const;
 
   DdsSettings settings_;
   ReferenceNeeds needs_;
@@ -53,7 +53,7 @@ class ReferenceListener {
   DdsInputs inputs_;
   bool all_joints_ = false;  // received a state with every joint
   std::vector<double> positions_;
-  std::string lacking_;  // joint missing in the newest ignored state
+  std::string missing_joint_;  // joint missing in the newest ignored state
 };
 
 }  // namespace glint

@@ -15,11 +15,11 @@ namespace {
 // Returns the camera pixel of a pixel of the undistorted image; -1 if there is none.
 int source_pixel(const CameraModel& camera, double u, double v) {
   if (camera.lens != Lens::pinhole) {
-    const Result<Vector2> bent =
+    const Result<Vector2> distorted =
         project(camera, {(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1});
-    if (!bent) return -1;
-    u = bent.value.x();
-    v = bent.value.y();
+    if (!distorted) return -1;
+    u = distorted.value.x();
+    v = distorted.value.y();
   }
   if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return -1;
   return static_cast<int>(v) * camera.width + static_cast<int>(u);
@@ -47,7 +47,7 @@ int pixels_a_side(const CameraModel& camera) {
 }
 
 // A frame without depth.
-SceneFrame empty_frame(const MaskPicture* mask, const CameraModel& camera) {
+SceneFrame empty_frame(const MaskImage* mask, const CameraModel& camera) {
   SceneFrame frame;
   const int scale = pixels_a_side(camera);
   frame.camera = {camera.width / scale, camera.height / scale, camera.fx / scale,
@@ -70,8 +70,7 @@ SceneFrame empty_frame(const MaskPicture* mask, const CameraModel& camera) {
 
 }  // namespace
 
-SceneFrame scene_frame(const DepthImage& depth, const MaskPicture* mask,
-                       const CameraModel& camera) {
+SceneFrame scene_frame(const DepthImage& depth, const MaskImage* mask, const CameraModel& camera) {
   SceneFrame frame = empty_frame(mask, camera);
   const int scale = pixels_a_side(camera);
   std::vector<float> values;
@@ -92,7 +91,7 @@ SceneFrame scene_frame(const DepthImage& depth, const MaskPicture* mask,
   return frame;
 }
 
-SceneFrame scene_frame(std::span<const Vector3f> points, const MaskPicture* mask,
+SceneFrame scene_frame(std::span<const Vector3f> points, const MaskImage* mask,
                        const CameraModel& camera) {
   SceneFrame frame = empty_frame(mask, camera);
   const Pinhole& pinhole = frame.camera;
@@ -120,7 +119,7 @@ SceneFrame scene_frame(std::span<const Vector3f> points, const MaskPicture* mask
 
 namespace {
 
-SceneFrame read_frame(const std::string& path, const MaskPicture* mask, const CameraModel& camera) {
+SceneFrame read_frame(const std::string& path, const MaskImage* mask, const CameraModel& camera) {
   if (!is_cloud_file(path)) return scene_frame(read_depth(path, camera), mask, camera);
   const std::vector<Vector3f> points = read_depth_points(path);
   SceneFrame frame = scene_frame(points, mask, camera);
@@ -147,20 +146,21 @@ void check_counts(const SceneFiles& files) {
   }
 }
 
-// `place` sets a frame's robot to these positions; their source is for error messages.
-template <class Robot, class Place>
-std::vector<SceneFrame> read_frames(const SceneFiles& files, const Robot& robot, Place place) {
+// `pose_robot` sets a frame's robot to these positions; their source is for error messages.
+template <class Robot, class PoseRobot>
+std::vector<SceneFrame> read_frames(const SceneFiles& files, const Robot& robot,
+                                    PoseRobot pose_robot) {
   check_counts(files);
   const CameraModel camera = read_camera_info(files.camera);
   std::vector<SceneFrame> frames;
   for (std::size_t i = 0; i < files.depth.size(); ++i) {
-    MaskPicture picture;
+    MaskImage picture;
     if (!files.masks.empty()) picture = read_mask(files.masks[i], camera);
-    const MaskPicture* mask = files.masks.empty() ? nullptr : &picture;
+    const MaskImage* mask = files.masks.empty() ? nullptr : &picture;
     frames.push_back(read_frame(files.depth[i], mask, camera));
     const std::string& from = files.positions ? files.positions_from : files.joints[i];
-    place(frames.back(),
-          files.positions ? *files.positions : read_joint_positions(from, robot.inputs), from);
+    pose_robot(frames.back(),
+               files.positions ? *files.positions : read_joint_positions(from, robot.inputs), from);
     frames.back().name = files.depth[i];
   }
   return frames;

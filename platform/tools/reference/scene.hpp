@@ -37,12 +37,12 @@ struct SceneFrame {
 
 // Reduces blocks of pixels to the mean of those within 1 % of the block's median, and undistorts.
 // `mask` may be null.
-[[nodiscard]] SceneFrame scene_frame(const DepthImage& depth, const MaskPicture* mask,
+[[nodiscard]] SceneFrame scene_frame(const DepthImage& depth, const MaskImage* mask,
                                      const CameraModel& camera);
 
 // The same for points in the camera's frame, metres: the points of one pixel of the working size
 // are merged as above. There may be fewer points than pixels, and none in the image.
-[[nodiscard]] SceneFrame scene_frame(std::span<const Vector3f> points, const MaskPicture* mask,
+[[nodiscard]] SceneFrame scene_frame(std::span<const Vector3f> points, const MaskImage* mask,
                                      const CameraModel& camera);
 
 struct SceneFiles {

@@ -14,7 +14,7 @@ constexpr int k_ticks_max = 50;
 
 }  // namespace
 
-Range widened(const Range& range, double part) {
+Range with_margin(const Range& range, double part) {
   if (!(range.span() > 0) || !std::isfinite(range.span()))
     return std::isfinite(range.low) ? Range{range.low - 1, range.low + 1} : Range{-1, 1};
   return {range.low - part * range.span(), range.high + part * range.span()};
@@ -44,11 +44,11 @@ std::string_view series_colour(std::size_t index) {
 
 Axes::Axes(SvgCanvas& canvas, const Vector2& corner, const Vector2& size, const Range& x,
            const Range& y)
-    : canvas_(canvas), corner_(corner), size_(size), x_(widened(x, 0)), y_(widened(y, 0)) {
+    : canvas_(canvas), corner_(corner), size_(size), x_(with_margin(x, 0)), y_(with_margin(y, 0)) {
   clip_ = canvas_.clip_rectangle(corner, size);
 }
 
-Vector2 Axes::place(double x, double y) const {
+Vector2 Axes::to_canvas(double x, double y) const {
   return {corner_.x() + size_.x() * (x - x_.low) / x_.span(),
           corner_.y() + size_.y() * (y_.high - y) / y_.span()};
 }
@@ -58,14 +58,14 @@ void Axes::draw(const AxesText& text) {
   const double right = left + size_.x(), bottom = top + size_.y();
   const Ticks x_ticks = round_ticks(x_, static_cast<int>(size_.x() / 70));
   for (const double value : x_ticks.values) {
-    const double x = place(value, y_.low).x();
+    const double x = to_canvas(value, y_.low).x();
     canvas_.line({x, top}, {x, bottom}, {k_grid_colour, 1, {}});
     canvas_.text({x, bottom + 16}, number_text(value, x_ticks.decimals),
                  {.size = 11, .anchor = TextAnchor::middle});
   }
   const Ticks y_ticks = round_ticks(y_, static_cast<int>(size_.y() / 45));
   for (const double value : y_ticks.values) {
-    const double y = place(x_.low, value).y();
+    const double y = to_canvas(x_.low, value).y();
     canvas_.line({left, y}, {right, y}, {k_grid_colour, 1, {}});
     canvas_.text({left - 6, y + 4}, number_text(value, y_ticks.decimals),
                  {.size = 11, .anchor = TextAnchor::end});
@@ -81,21 +81,21 @@ void Axes::draw(const AxesText& text) {
 }
 
 void Axes::line(std::vector<Vector2> values, const Stroke& stroke) {
-  for (Vector2& value : values) value = place(value.x(), value.y());
+  for (Vector2& value : values) value = to_canvas(value.x(), value.y());
   canvas_.polyline(values, stroke, clip_);
 }
 
 void Axes::bar(double x_low, double x_high, double y, std::string_view fill, double opacity) {
-  const Vector2 top = place(x_low, std::clamp(y, y_.low, y_.high));
-  const Vector2 bottom = place(x_high, std::clamp(0.0, y_.low, y_.high));
+  const Vector2 top = to_canvas(x_low, std::clamp(y, y_.low, y_.high));
+  const Vector2 bottom = to_canvas(x_high, std::clamp(0.0, y_.low, y_.high));
   if (bottom.y() > top.y()) canvas_.rectangle(top, bottom - top, fill, opacity);
 }
 
 void Axes::vertical(double x, const Stroke& stroke, std::string_view label, double label_drop) {
   if (!(x >= x_.low && x <= x_.high)) return;
-  canvas_.line(place(x, y_.low), place(x, y_.high), stroke);
+  canvas_.line(to_canvas(x, y_.low), to_canvas(x, y_.high), stroke);
   // Without room to the right of the line, the label is to its left.
-  const Vector2 top = place(x, y_.high);
+  const Vector2 top = to_canvas(x, y_.high);
   const bool right = top.x() < corner_.x() + 0.7 * size_.x();
   canvas_.text(
       {top.x() + (right ? 5 : -5), top.y() + label_drop}, label,

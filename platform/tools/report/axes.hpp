@@ -16,7 +16,7 @@ struct Range {
 
 // Adds `part` of the range's span on both sides. Returns [low - 1, low + 1] for an empty or
 // reversed range, [-1, 1] if its low end is not finite.
-[[nodiscard]] Range widened(const Range& range, double part);
+[[nodiscard]] Range with_margin(const Range& range, double part);
 
 // Round numbers inside the range, about `wanted` of them; their step is 1, 2 or 5 times a power of
 // 10.
@@ -40,7 +40,7 @@ class Axes {
        const Range& y);
 
   void draw(const AxesText& text);
-  [[nodiscard]] Vector2 place(double x, double y) const;
+  [[nodiscard]] Vector2 to_canvas(double x, double y) const;
   void line(std::vector<Vector2> values, const Stroke& stroke);
   // Bar from the axis up to y.
   void bar(double x_low, double x_high, double y, std::string_view fill, double opacity);

@@ -12,12 +12,13 @@ namespace glint {
 namespace {
 
 // Part of an error's variance that the data must remove.
-constexpr double k_shown_least = 0.5;
+constexpr double k_variance_reduction_min = 0.5;
 // Limits in stated standard deviations: one error, the largest of several, the rms of several.
-constexpr double k_one_most = 2.5, k_largest_most = 3.2, k_rms_most = 2;
-constexpr int k_sights_least = 30;
-constexpr double k_drift_most = 2;  // ratio to the declared drift, less two standard deviations of
-                                    // the observations
+constexpr double k_single_error_max_sigmas = 2.5, k_largest_error_max_sigmas = 3.2,
+                 k_rms_error_max_sigmas = 2;
+constexpr int k_observations_min = 30;
+constexpr double k_drift_ratio_max = 2;  // ratio to the declared drift, less two standard
+                                         // deviations of the observations
 // Standard deviation of the log of the drift factor. The drift's random walk scales with the
 // headset's own velocity, which has an error.
 constexpr double k_drift_model_sigma = 0.4;
@@ -28,7 +29,7 @@ struct Estimate {
   Eigen::MatrixXd covariance;
   Eigen::VectorXd errors;
 
-  Estimate(std::span<const ToolErrors> tools, const WorldFindings* world) {
+  Estimate(std::span<const ToolErrors> tools, const WorldErrorEstimate* world) {
     Eigen::Index size = k_shared_errors;
     for (const ToolErrors& tool : tools) size += 3 * tool.markers;
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size);
@@ -49,26 +50,27 @@ struct Estimate {
       matrix.block(at, 0, own, k_common) += all.block(k_common, 0, own, k_common);
       matrix.block(0, at, k_common, own) += all.block(0, k_common, k_common, own);
       matrix.block(at, at, own, own) += all.block(k_common, k_common, own, own);
-      pull.head(k_common) += tool.sums.pull.head(k_common);
-      pull.segment(at, own) += tool.sums.pull.segment(k_common, own);
+      pull.head(k_common) += tool.sums.information_vector.head(k_common);
+      pull.segment(at, own) += tool.sums.information_vector.segment(k_common, own);
       at += own;
     }
     covariance = solve_symmetric(matrix, Eigen::MatrixXd::Identity(size, size));
     errors = covariance * pull;
   }
-  [[nodiscard]] double shown(int error) const { return 1 - covariance(error, error); }
+  [[nodiscard]] double variance_reduction(int error) const { return 1 - covariance(error, error); }
 };
 
 // Errors that a static body shows, with the maximum-likelihood factor of the headset's drift.
-struct World {
+struct StaticBodyErrors {
   bool seen = false;
-  WorldFindings errors;
+  WorldErrorEstimate errors;
   double drift = 1, drift_log_sigma = 0;
 
-  explicit World(const WorldErrors* all) : seen(all != nullptr && all->sights() >= k_sights_least) {
+  explicit StaticBodyErrors(const WorldErrors* all)
+      : seen(all != nullptr && all->measurement_count() >= k_observations_min) {
     if (!seen) return;
-    constexpr std::size_t k_factors = k_walk_factors.size();
-    std::array<WorldFindings, k_factors> each;
+    constexpr std::size_t k_factors = k_head_noise_factors.size();
+    std::array<WorldErrorEstimate, k_factors> each;
     std::size_t best = 0;
     for (std::size_t i = 0; i < k_factors; ++i) {
       each[i] = all->of_factor(i);
@@ -79,11 +81,12 @@ struct World {
     const std::size_t middle = std::clamp<std::size_t>(best, 1, k_factors - 2);
     const double below = each[middle - 1].log_likelihood, here = each[middle].log_likelihood,
                  above = each[middle + 1].log_likelihood;
-    const double step = std::log(k_walk_factors[middle + 1] / k_walk_factors[middle]);
-    const double bend = below - 2 * here + above;
-    const double top = bend < 0 ? std::clamp(0.5 * (below - above) / bend, -1.0, 1.0) : 0;
-    drift = k_walk_factors[middle] * std::exp(step * top);
-    drift_log_sigma = bend < 0 ? step / std::sqrt(-bend) : step;
+    const double step = std::log(k_head_noise_factors[middle + 1] / k_head_noise_factors[middle]);
+    const double curvature = below - 2 * here + above;
+    const double maximum =
+        curvature < 0 ? std::clamp(0.5 * (below - above) / curvature, -1.0, 1.0) : 0;
+    drift = k_head_noise_factors[middle] * std::exp(step * maximum);
+    drift_log_sigma = curvature < 0 ? step / std::sqrt(-curvature) : step;
   }
 };
 
@@ -94,12 +97,13 @@ struct Size {
   double largest = 0, rms = 0, chi_square = 0;
 
   Size(const Estimate& estimate, int first, int count) {
-    const Eigen::MatrixXd shown = Eigen::MatrixXd::Identity(count, count) -
-                                  estimate.covariance.block(first, first, count, count);
-    const SymmetricEigen axis = symmetric_eigen(shown);
+    const Eigen::MatrixXd variance_reduction =
+        Eigen::MatrixXd::Identity(count, count) -
+        estimate.covariance.block(first, first, count, count);
+    const SymmetricEigen axis = symmetric_eigen(variance_reduction);
     for (int i = 0; i < count; ++i) {
       const double part = axis.values(i);
-      if (part < k_shown_least) continue;
+      if (part < k_variance_reduction_min) continue;
       const double size =
           axis.vectors.col(i).dot(estimate.errors.segment(first, count)) / std::sqrt(part);
       largest = std::max(largest, std::abs(size));
@@ -109,12 +113,13 @@ struct Size {
     if (axes > 0) rms = std::sqrt(chi_square / axes);
   }
   [[nodiscard]] bool beyond() const {
-    return axes == 1 ? largest > k_one_most : largest > k_largest_most || rms > k_rms_most;
+    return axes == 1 ? largest > k_single_error_max_sigmas
+                     : largest > k_largest_error_max_sigmas || rms > k_rms_error_max_sigmas;
   }
 };
 
 // The calibration command that measures the error, or the place where it is stated.
-const char* remedy_of(ErrorSource source) {
+const char* calibration_command_of(ErrorSource source) {
   switch (source) {
     case ErrorSource::principal_point:
     case ErrorSource::focal_length:
@@ -141,7 +146,8 @@ class Findings {
       fits += tool.sums.fits;
     }
     range_m_ /= fits;
-    if (estimate_.shown(0) > k_shown_least && estimate_.shown(1) > k_shown_least) {
+    if (estimate_.variance_reduction(0) > k_variance_reduction_min &&
+        estimate_.variance_reduction(1) > k_variance_reduction_min) {
       add_one(ErrorSource::range_offset, 0, stated.range_offset_m);
       add_one(ErrorSource::range_scale, 1, stated.range_scale);
     } else {
@@ -151,7 +157,7 @@ class Findings {
     add_one(ErrorSource::focal_length, 4, stated.focal_scale);
     if (world_.seen) {
       add_one(ErrorSource::time_offset, k_common_errors, time_sigma_s);
-      const bool wider = world_.drift * std::exp(-2 * world_.drift_log_sigma) > k_drift_most;
+      const bool wider = world_.drift * std::exp(-2 * world_.drift_log_sigma) > k_drift_ratio_max;
       const double log_sigma = std::hypot(world_.drift_log_sigma, k_drift_model_sigma);
       found.push_back({{},
                        ErrorSource::head_drift,
@@ -202,7 +208,7 @@ class Findings {
         tool.marker_sigma_m * std::sqrt(variance), Size(estimate_, at, count));
   }
 
-  World world_;
+  StaticBodyErrors world_;
   Estimate estimate_;
   const CameraUncertainty& stated_;
   double range_m_ = 0;
@@ -226,7 +232,7 @@ ErrorUnit unit_of(ErrorSource source) {
 
 std::string text_of(const CalibrationFinding& finding) {
   const ErrorUnit unit = unit_of(finding.source);
-  const char* const remedy = remedy_of(finding.source);
+  const char* const remedy = calibration_command_of(finding.source);
   char at[32] = "";
   if (finding.source == ErrorSource::range)
     std::snprintf(at, sizeof at, " at %.0f mm", 1e3 * finding.range_m);
@@ -234,17 +240,18 @@ std::string text_of(const CalibrationFinding& finding) {
   std::snprintf(text, sizeof text, "%s%s%s %.2f %s%s (sigma %.2f), %.1f times what is stated; %s",
                 finding.tool.c_str(), finding.tool.empty() ? "" : ": ",
                 std::string(name_of(finding.source)).c_str(), unit.per_base * finding.estimate,
-                unit.text, at, unit.per_base * finding.sigma, finding.stated_sigmas, remedy);
+                unit.text, at, unit.per_base * finding.sigma, finding.size_in_stated_sigmas,
+                remedy);
   return text;
 }
 
-void CalibrationNotes::set(std::vector<CalibrationFinding> findings) {
-  const std::lock_guard lock(one_);
+void CalibrationFindingsStore::set(std::vector<CalibrationFinding> findings) {
+  const std::lock_guard lock(mutex_);
   findings_ = std::move(findings);
 }
 
-std::vector<CalibrationFinding> CalibrationNotes::all() const {
-  const std::lock_guard lock(one_);
+std::vector<CalibrationFinding> CalibrationFindingsStore::all() const {
+  const std::lock_guard lock(mutex_);
   return findings_;
 }
 

@@ -39,11 +39,11 @@ struct CalibrationFinding {
   // markers); 1 for scales; px for the principal point (its distance); s for time; for the drift
   // the ratio to the declared drift.
   double estimate = 0, sigma = 0, range_m = 0;
-  double stated_sigmas = 0;  // size of the error
+  double size_in_stated_sigmas = 0;  // size of the error
   // Over the axes that the data determine. 0 axes: more than half of the stated variance remains.
   double chi_square = 0;
   int axes = 0;
-  bool named = false;  // larger than the stated standard deviations explain
+  bool exceeds_stated = false;  // larger than the stated standard deviations explain
 };
 
 // Unit in which the estimate of a source is printed.
@@ -58,13 +58,13 @@ struct ErrorUnit {
 [[nodiscard]] std::string text_of(const CalibrationFinding& finding);
 
 // Newest findings, shared by the thread that computes them and the thread that publishes them.
-class CalibrationNotes {
+class CalibrationFindingsStore {
  public:
   void set(std::vector<CalibrationFinding> findings);
   [[nodiscard]] std::vector<CalibrationFinding> all() const;
 
  private:
-  mutable std::mutex one_;
+  mutable std::mutex mutex_;
   std::vector<CalibrationFinding> findings_;
 };
 

@@ -24,7 +24,7 @@ std::uint16_t reflectivity_at(const Frame& frame, int x, int y) {
                                       : std::uint16_t{frame.reflectivity_8.row(y)[x]};
 }
 
-cv::Mat toned(const Frame& frame) {
+cv::Mat tone_mapped(const Frame& frame) {
   std::vector<std::uint16_t> values;
   values.reserve(static_cast<std::size_t>(frame.width()) *
                  static_cast<std::size_t>(frame.height()));
@@ -48,7 +48,7 @@ cv::Mat toned(const Frame& frame) {
 }
 
 // Converts pixel centres at integer + 0.5 to OpenCV's, which are at integers.
-cv::Point on_picture(const Vector2& pixel) {
+cv::Point to_image_pixel(const Vector2& pixel) {
   const auto to_int = [](double v) {
     return static_cast<int>(std::lround(std::clamp(v * k_enlarge - 0.5, -1e6, 1e6)));
   };
@@ -74,7 +74,7 @@ void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers,
     const cv::Scalar& colour = !name.empty() ? k_tool_colour
                                : ranged      ? k_marker_colour
                                              : k_blob_colour;
-    const cv::Point middle = on_picture(blob.centroid_px);
+    const cv::Point middle = to_image_pixel(blob.centroid_px);
     const int side = std::max(blob.x1 - blob.x0, blob.y1 - blob.y0);
     const int radius = k_enlarge * (side / 2 + 3);
     cv::circle(picture, middle, radius, colour, 1, cv::LINE_AA);
@@ -91,13 +91,13 @@ void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers,
 
 }  // namespace
 
-void write_picture(const std::string& path, const Frame& frame, const Rois& rois,
-                   const Blobs& blobs, const Markers& markers, std::span<const std::string> lines,
-                   std::span<const std::string> names) {
+void write_detection_image(const std::string& path, const Frame& frame, const Rois& rois,
+                           const Blobs& blobs, const Markers& markers,
+                           std::span<const std::string> lines, std::span<const std::string> names) {
   if (frame.width() <= 0 || frame.height() <= 0) {
     throw InputError(path + ": the frame has no reflectivity to draw; expected at least a pixel");
   }
-  const cv::Mat image = toned(frame);
+  const cv::Mat image = tone_mapped(frame);
   const int text_height = lines.empty() ? 0 : static_cast<int>(lines.size()) * k_line_height + 8;
   cv::Mat picture(image.rows + text_height, image.cols, CV_8UC3, cv::Scalar::all(24));
   image.copyTo(picture(cv::Rect(0, 0, image.cols, image.rows)));

@@ -16,8 +16,9 @@ namespace glint {
 // dark scene is visible beside bright markers. Writes a temporary file and renames it. `names`:
 // labels of the blobs in their order, empty for a blob of no tool; or no names at all.
 // Throws InputError if path cannot be written or the frame has no reflectivity.
-void write_picture(const std::string& path, const Frame& frame, const Rois& rois,
-                   const Blobs& blobs, const Markers& markers, std::span<const std::string> lines,
-                   std::span<const std::string> names = {});
+void write_detection_image(const std::string& path, const Frame& frame, const Rois& rois,
+                           const Blobs& blobs, const Markers& markers,
+                           std::span<const std::string> lines,
+                           std::span<const std::string> names = {});
 
 }  // namespace glint

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double k_left = 74, k_top = 42, k_right = 22, k_bottom = 54;
 constexpr double k_plot_width = 640, k_plot_height = 340;
-constexpr int k_bell_points = 200;
+constexpr int k_gaussian_curve_points = 200;
 constexpr int k_latency_bins = 60;
 
 SvgCanvas canvas_for(double plot_width, double plot_height) {
@@ -37,17 +37,17 @@ double density(const HistogramSeries& series, double count) {
   return count / (total(series.histogram) * series.histogram.width);
 }
 
-std::vector<Vector2> bell(const HistogramSeries& series, const Range& x) {
+std::vector<Vector2> gaussian_curve(const HistogramSeries& series, const Range& x) {
   std::vector<Vector2> points;
-  for (int i = 0; i <= k_bell_points; ++i) {
-    const double at = x.low + x.span() * i / k_bell_points;
+  for (int i = 0; i <= k_gaussian_curve_points; ++i) {
+    const double at = x.low + x.span() * i / k_gaussian_curve_points;
     points.emplace_back(at, density(series, series.fit.at(at)));
   }
   return points;
 }
 
 // Equal scale on both axes: extends the smaller span about its middle.
-Range grown_to(const Range& range, double span) {
+Range extended_to(const Range& range, double span) {
   const double middle = 0.5 * (range.low + range.high);
   return {middle - 0.5 * span, middle + 0.5 * span};
 }
@@ -60,7 +60,7 @@ std::string line_plot(const AxesText& text, std::span<const LineSeries> series) 
     for (const Vector2& point : line.points) limits.take(point.x(), point.y());
   SvgCanvas canvas = canvas_for(k_plot_width, k_plot_height);
   Axes axes(canvas, {k_left, k_top}, {k_plot_width, k_plot_height}, limits.x,
-            widened(limits.y, 0.06));
+            with_margin(limits.y, 0.06));
   axes.draw(text);
   for (std::size_t i = 0; i < series.size(); ++i) {
     const Stroke stroke{series_colour(i), 1.4, {}};
@@ -81,7 +81,7 @@ std::string histogram_plot(const AxesText& text, std::span<const HistogramSeries
   }
   SvgCanvas canvas = canvas_for(k_plot_width, k_plot_height);
   Axes axes(canvas, {k_left, k_top}, {k_plot_width, k_plot_height}, limits.x,
-            {0, widened(limits.y, 0.06).high});
+            {0, with_margin(limits.y, 0.06).high});
   axes.draw(text);
   int row = 0;
   for (std::size_t i = 0; i < series.size(); ++i) {
@@ -96,7 +96,7 @@ std::string histogram_plot(const AxesText& text, std::span<const HistogramSeries
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (!series[i].fit.valid) continue;
     const Stroke stroke{series_colour(i), 1.8, "6 3"};
-    axes.line(bell(series[i], limits.x), stroke);
+    axes.line(gaussian_curve(series[i], limits.x), stroke);
     axes.legend(row++, "Gaussian fit, sd " + number_text(series[i].fit.sd, 2), stroke);
   }
   return canvas.finished();
@@ -114,11 +114,11 @@ std::string trajectory_plot(const std::string& title, std::span<const Trajectory
   SvgCanvas canvas = canvas_for(2 * side + gap, side);
   double span = 1e-3;
   for (const Limits* limits : {&above, &aside})
-    span = std::max({span, widened(limits->x, 0).span(), widened(limits->y, 0).span()});
+    span = std::max({span, with_margin(limits->x, 0).span(), with_margin(limits->y, 0).span()});
   span *= 1.08;
   const auto panel = [&](double left, const Limits& limits, int axis, const AxesText& text) {
-    Axes axes(canvas, {left, k_top}, {side, side}, grown_to(widened(limits.x, 0), span),
-              grown_to(widened(limits.y, 0), span));
+    Axes axes(canvas, {left, k_top}, {side, side}, extended_to(with_margin(limits.x, 0), span),
+              extended_to(with_margin(limits.y, 0), span));
     axes.draw(text);
     for (std::size_t i = 0; i < series.size(); ++i) {
       std::vector<Vector2> points;
@@ -137,7 +137,7 @@ std::string latency_plot(const std::string& title, std::span<const double> laten
   const double p50 = percentile(latencies_us, 0.5);
   const double p99 = percentile(latencies_us, 0.99);
   const double p99_9 = percentile(latencies_us, 0.999);
-  const double greatest = summarize(latencies_us).greatest;
+  const double maximum = summarize(latencies_us).maximum;
   const double high = p99_9 > 0 ? 1.05 * p99_9 : 1;
   const Histogram histogram = make_histogram(latencies_us, 0, high, k_latency_bins);
   const std::size_t most = *std::max_element(histogram.counts.begin(), histogram.counts.end());
@@ -145,7 +145,7 @@ std::string latency_plot(const std::string& title, std::span<const double> laten
   Axes axes(canvas, {k_left, k_top}, {k_plot_width, k_plot_height}, {0, high},
             {0, 1.1 * static_cast<double>(std::max<std::size_t>(most, 1))});
   axes.draw({title + " (n = " + std::to_string(latencies_us.size()) + ", max " +
-                 number_text(greatest, 0) + " us)",
+                 number_text(maximum, 0) + " us)",
              "latency [us]", "count"});
   for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
     const double low = static_cast<double>(bin) * histogram.width;

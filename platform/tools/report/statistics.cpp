@@ -36,8 +36,8 @@ Summary summarize(std::span<const double> values) {
   const std::size_t middle = sorted.size() / 2;
   summary.median =
       sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
-  summary.least = sorted.front();
-  summary.greatest = sorted.back();
+  summary.minimum = sorted.front();
+  summary.maximum = sorted.back();
   return summary;
 }
 
@@ -46,9 +46,10 @@ double percentile(std::span<const double> values, double fraction) {
   const double rank = std::ceil(fraction * static_cast<double>(values.size()));
   const auto index = static_cast<std::size_t>(std::max(rank, 1.0)) - 1;
   std::vector<double> copy(values.begin(), values.end());
-  const auto place = copy.begin() + static_cast<std::ptrdiff_t>(std::min(index, copy.size() - 1));
-  std::nth_element(copy.begin(), place, copy.end());
-  return *place;
+  const auto position =
+      copy.begin() + static_cast<std::ptrdiff_t>(std::min(index, copy.size() - 1));
+  std::nth_element(copy.begin(), position, copy.end());
+  return *position;
 }
 
 double chi_square_tail(double x, int degrees_of_freedom) {

@@ -15,7 +15,7 @@ struct Summary {
   double sd = 0;   // about the mean, divided by count - 1
   double rms = 0;  // about zero
   double median = 0;
-  double least = 0, greatest = 0;
+  double minimum = 0, maximum = 0;
 };
 [[nodiscard]] Summary summarize(std::span<const double> values);
 

@@ -75,14 +75,14 @@ void SvgCanvas::rectangle(const Vector2& corner, const Vector2& size, std::strin
            "\" fill-opacity=\"" + unit(opacity) + "\"/>\n";
 }
 
-void SvgCanvas::text(const Vector2& place, std::string_view words, const TextStyle& style) {
+void SvgCanvas::text(const Vector2& position, std::string_view words, const TextStyle& style) {
   constexpr std::string_view anchors[] = {"start", "middle", "end"};
-  body_ += "<text" + pair("x", place.x(), "y", place.y()) + " font-size=\"" + unit(style.size) +
-           "\" fill=\"" + std::string(style.colour) + "\" text-anchor=\"" +
+  body_ += "<text" + pair("x", position.x(), "y", position.y()) + " font-size=\"" +
+           unit(style.size) + "\" fill=\"" + std::string(style.colour) + "\" text-anchor=\"" +
            std::string(anchors[static_cast<std::size_t>(style.anchor)]) + '"';
   if (style.bold) body_ += " font-weight=\"bold\"";
   if (style.upwards)
-    body_ += " transform=\"rotate(-90 " + unit(place.x()) + ' ' + unit(place.y()) + ")\"";
+    body_ += " transform=\"rotate(-90 " + unit(position.x()) + ' ' + unit(position.y()) + ")\"";
   body_ += '>' + printable_markup(words) + "</text>\n";
 }
 
@@ -94,7 +94,7 @@ std::string SvgCanvas::clip_rectangle(const Vector2& corner, const Vector2& size
 }
 
 void write_text_file(const std::string& path, std::string_view text) {
-  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
+  if (const std::string reason = write_file_atomically(path, text); !reason.empty()) {
     throw InputError(path + ": cannot be written: " + reason +
                      "; expected a folder with room to write in");
   }

@@ -34,7 +34,7 @@ class SvgCanvas {
   // A non-finite point breaks the line. `clip`: name returned by clip_rectangle(), or empty.
   void polyline(std::span<const Vector2> points, const Stroke& stroke, std::string_view clip = {});
   void rectangle(const Vector2& corner, const Vector2& size, std::string_view fill, double opacity);
-  void text(const Vector2& place, std::string_view words, const TextStyle& style = {});
+  void text(const Vector2& position, std::string_view words, const TextStyle& style = {});
   // Declares a clip rectangle for polylines; returns its name.
   std::string clip_rectangle(const Vector2& corner, const Vector2& size);
 

@@ -39,21 +39,21 @@ class Files {
   posix_spawn_file_actions_t actions_;
 };
 
-enum class Took : std::uint8_t { some, all, no_more_time };
+enum class ReadResult : std::uint8_t { some, all, no_more_time };
 
 // Reads from the pipe; waits for data until the deadline.
-Took take(int pipe, Clock::time_point deadline, std::string& bytes) {
+ReadResult read_some(int pipe, Clock::time_point deadline, std::string& bytes) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
-  if (left.count() <= 0) return Took::no_more_time;
+  if (left.count() <= 0) return ReadResult::no_more_time;
   pollfd ready{pipe, POLLIN, 0};
   if (::poll(&ready, 1, static_cast<int>(std::min<long long>(left.count(), 1000))) <= 0) {
-    return Took::some;  // the caller tests the deadline again
+    return ReadResult::some;  // the caller tests the deadline again
   }
   std::array<char, 65536> piece{};
   const ssize_t size = ::read(pipe, piece.data(), piece.size());
-  if (size < 0) return errno == EINTR ? Took::some : Took::all;
+  if (size < 0) return errno == EINTR ? ReadResult::some : ReadResult::all;
   bytes.append(piece.data(), static_cast<std::size_t>(size));
-  return size == 0 ? Took::all : Took::some;
+  return size == 0 ? ReadResult::all : ReadResult::some;
 }
 
 // Waits for the exit and kills at the deadline: a program may close its output and continue.
@@ -93,14 +93,14 @@ ProcessOutput output_of(std::vector<std::string> command, const ProcessLimits& l
   }
   const auto deadline = Clock::now() + std::chrono::nanoseconds(limits.time.nanoseconds);
   ProcessOutput out;
-  Took took = Took::some;
-  while (took == Took::some && out.bytes.size() <= limits.output_bytes) {
-    took = take(ends[0], deadline, out.bytes);
+  ReadResult result = ReadResult::some;
+  while (result == ReadResult::some && out.bytes.size() <= limits.output_bytes) {
+    result = read_some(ends[0], deadline, out.bytes);
   }
   ::close(ends[0]);
-  if (took == Took::some) ::kill(process, SIGKILL);
+  if (result == ReadResult::some) ::kill(process, SIGKILL);
   out.end = end_of(process, deadline);
-  if (took == Took::some) out.end = ProcessEnd::too_much;
+  if (result == ReadResult::some) out.end = ProcessEnd::too_much;
   return out;
 }
 

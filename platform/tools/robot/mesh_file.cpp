@@ -122,7 +122,7 @@ namespace fs = std::filesystem;
 
 // Returns whether `path` is in `folder`, lexically: symbolic links in a package folder are its
 // owner's and may lead out of it.
-bool lies_in(const fs::path& folder, const fs::path& path) {
+bool is_inside(const fs::path& folder, const fs::path& path) {
   fs::path base = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
   if (!base.has_filename()) base = base.parent_path();  // "folder/" has an empty last part
   const auto [end, _] = std::mismatch(base.begin(), base.end(), path.begin(), path.end());
@@ -146,9 +146,9 @@ std::string confined(const fs::path& path, const std::string& name, const RobotF
                      bool beside) {
   std::error_code error;  // an empty name has no absolute path
   const fs::path found = fs::absolute(path, error).lexically_normal();
-  bool inside = beside && lies_in(fs::path(files.urdf).parent_path(), found);
+  bool inside = beside && is_inside(fs::path(files.urdf).parent_path(), found);
   for (const std::string& entry : files.package_dirs) {
-    inside = inside || lies_in(folder_of(entry), found);
+    inside = inside || is_inside(folder_of(entry), found);
   }
   if (!inside) {
     throw InputError(files.urdf + ": mesh '" + name + "' lies outside of " +
@@ -184,12 +184,12 @@ std::string find_mesh(const std::string& name, const RobotFiles& files) {
     throw InputError(files.urdf + ": mesh '" + name +
                      "' leads out of its package; expected a path of names, without '..' and '//'");
   }
-  std::string looked;
+  std::string searched;
   for (const std::string& entry : files.package_dirs) {
     const std::size_t equals = entry.find('=');
     if (equals != std::string::npos && entry.substr(0, equals) != wanted) continue;
     const fs::path folder = folder_of(entry);
-    looked += (looked.empty() ? "" : ", ") + folder.string();
+    searched += (searched.empty() ? "" : ", ") + folder.string();
     for (std::string part = rest;;) {
       if (is_file(folder / part)) return (folder / part).string();
       const std::size_t slash = part.find('/');
@@ -198,7 +198,7 @@ std::string find_mesh(const std::string& name, const RobotFiles& files) {
     }
   }
   throw InputError(files.urdf + ": mesh '" + name + "' is not there; looked below: " +
-                   (looked.empty() ? "nothing (give --package-dir)" : looked));
+                   (searched.empty() ? "nothing (give --package-dir)" : searched));
 }
 
 }  // namespace glint

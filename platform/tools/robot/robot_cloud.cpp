@@ -233,7 +233,7 @@ void write_robot_cloud(const std::string& path, const RobotCloud& robot) {
   }
   GrowingFile file(path);
   const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  if (!file.append({std::span(data, bytes.size())}) || !file.name()) {
+  if (!file.append({std::span(data, bytes.size())}) || !file.finish()) {
     throw InputError(path + ": " + file.error() + "; expected a place for a file");
   }
 }

@@ -78,7 +78,7 @@ class TreeBuilder {
         throw InputError(path_ + ": joint '" + joint.name + "': its axis has no direction");
       }
       to.axis = axis.normalized();
-      follow(joint, to);
+      resolve_mimic(joint, to);
     }
     link_[joint.child_link_name] = robot_.tree.joint_count;
     robot_.links.push_back(joint.child_link_name);
@@ -90,9 +90,9 @@ class TreeBuilder {
         return JointKind::fixed;
       case urdf::Joint::REVOLUTE:
       case urdf::Joint::CONTINUOUS:
-        return JointKind::turning;
+        return JointKind::revolute;
       case urdf::Joint::PRISMATIC:
-        return JointKind::sliding;
+        return JointKind::prismatic;
       default:
         break;
     }
@@ -101,7 +101,7 @@ class TreeBuilder {
   }
 
   // Resolves chains of mimic joints to the joint with its own value.
-  void follow(const urdf::Joint& joint, TreeJoint& to) const {
+  void resolve_mimic(const urdf::Joint& joint, TreeJoint& to) const {
     const urdf::Joint* at = &joint;
     for (std::size_t steps = 0; at->mimic; ++steps) {
       const urdf::JointConstSharedPtr next = file_.model->getJoint(at->mimic->joint_name);

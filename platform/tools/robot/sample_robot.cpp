@@ -30,18 +30,19 @@ RobotCloud sample_robot(const RobotModel& robot, int points) {
   }
   out.spacing_m = static_cast<float>(std::sqrt(total / points));
   const sim::RandomKey key{0, sim::Stream::points, 0};
-  double walked = 0;
+  double cumulative_area = 0;
   std::uint64_t next = 0;
-  const auto place = [&](std::uint64_t i) {
+  const auto area_position = [&](std::uint64_t i) {
     return (static_cast<double>(i) + sim::uniform(key, 3 * i)) * total / points;
   };
   for (const LinkSurface& link : robot.surfaces) {
     const Surface surface{link.corners, link.faces};
     for (std::size_t f = 0; f < link.faces.size(); ++f) {
       const Triangle t = surface.triangle(f);
-      walked += area_of(t);
+      cumulative_area += area_of(t);
       const Vector3f normal = (t.b - t.a).cross(t.c - t.a).normalized();
-      for (; next < static_cast<std::uint64_t>(points) && place(next) < walked; ++next) {
+      for (; next < static_cast<std::uint64_t>(points) && area_position(next) < cumulative_area;
+           ++next) {
         const auto root = static_cast<float>(std::sqrt(sim::uniform(key, 3 * next + 1)));
         const auto along = static_cast<float>(sim::uniform(key, 3 * next + 2));
         out.points.emplace_back((1 - root) * t.a + root * (1 - along) * t.b + root * along * t.c);

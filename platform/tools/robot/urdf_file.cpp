@@ -21,12 +21,12 @@ constexpr int k_nesting_max = 64;     // XML parsers recurse per level; a URDF h
 constexpr int k_attributes_max = 64;  // per element
 
 // Captures urdfdom's error messages instead of printing them to stderr.
-class Complaints : public console_bridge::OutputHandler {
+class UrdfErrors : public console_bridge::OutputHandler {
  public:
-  Complaints() { console_bridge::useOutputHandler(this); }
-  ~Complaints() override { console_bridge::restorePreviousOutputHandler(); }
-  Complaints(const Complaints&) = delete;
-  Complaints& operator=(const Complaints&) = delete;
+  UrdfErrors() { console_bridge::useOutputHandler(this); }
+  ~UrdfErrors() override { console_bridge::restorePreviousOutputHandler(); }
+  UrdfErrors(const UrdfErrors&) = delete;
+  UrdfErrors& operator=(const UrdfErrors&) = delete;
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text;
   }
@@ -179,13 +179,13 @@ UrdfFile read_urdf_text(const std::string& text, const std::string& from) {
   UrdfFile file;
   file.joints = joints_of(*robot, from);
   check_tree(*robot, from);
-  Complaints complaints;
+  UrdfErrors errors;
   try {
     file.model = urdf::parseURDF(copy.text());
   } catch (const std::exception& error) {
     throw InputError(from + ": " + error.what());
   }
-  if (!file.model) throw InputError(from + ": " + complaints.first());
+  if (!file.model) throw InputError(from + ": " + errors.first());
   return file;
 }
 

@@ -1,6 +1,6 @@
 // Joint covariance of a tool's tip over several touches.
 //
-// Three rows per touch, of the mean of its sightings. Contributions: random noise; each marker's
+// Three rows per touch, of the mean of its observations. Contributions: random noise; each marker's
 // slow errors, two Gauss-Markov processes; lens residual and range ripple, independent between
 // positions; headset drift, a Gauss-Markov process, and its increase by head motion; the tip's
 // error, which rotates with the tool. Calibration errors are constant: they are separate columns.
@@ -15,11 +15,13 @@
 
 namespace glint {
 
-enum class Places { apart, same };  // same: lens residual and range ripple are common to all
+// same: lens residual and range ripple are common to all touches.
+enum class TouchPositions { apart, same };
 
 // Covariance of all errors except the calibration errors.
 [[nodiscard]] Eigen::MatrixXd joint_covariance(std::span<const Touch> touches,
-                                               const StatedErrors& stated, Places places);
+                                               const StatedErrors& stated,
+                                               TouchPositions positions);
 
 // One column per calibration error: the effect of one stated sigma.
 [[nodiscard]] Eigen::MatrixXd calibration_columns(std::span<const Touch> touches);

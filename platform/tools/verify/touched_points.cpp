@@ -40,9 +40,9 @@ TouchedPoints touched_points(const TipSeries& series, double distance_m) {
   TouchedPoints out;
   const double within_m = 0.5 * distance_m;
   std::vector<Touch> held;
-  for (const Hold& hold : find_holds(series)) {
-    if (hold.seconds > out.rest.seconds) out.rest = hold;
-    if (hold.seconds < k_rest_min_s) held.push_back(mean_of(series, hold));
+  for (const StaticInterval& interval : find_static_intervals(series)) {
+    if (interval.seconds > out.static_interval.seconds) out.static_interval = interval;
+    if (interval.seconds < k_rest_min_s) held.push_back(mean_of(series, interval));
   }
   if (held.empty()) return out;
   const Vector3 first = most_touched(held, within_m);
@@ -54,14 +54,14 @@ TouchedPoints touched_points(const TipSeries& series, double distance_m) {
   }
   if (!apart.empty()) add(apart, most_touched(apart, within_m), within_m, true, out);
   out.other_count = static_cast<int>(held.size() - out.touches.size());
-  std::vector<StampedPose> poses;
+  std::vector<TimedPose> poses;
   for (const Touch& touch : out.touches)
     poses.push_back({touch.mean.time, {touch.mean.rotation, touch.mean.tip_m}});
   out.spread = rotation_spread(poses);
   return out;
 }
 
-std::string TouchedPoints::lacks(int touches_min) const {
+std::string TouchedPoints::missing(int touches_min) const {
   const std::string how = ": hold the tip still on the point for three seconds each time";
   if (first_count < touches_min) {
     return std::to_string(first_count) + " touches of one point; expected at least " +
@@ -70,15 +70,15 @@ std::string TouchedPoints::lacks(int touches_min) const {
   if (second_count == 0) {
     return "no touch of a second point at the known distance; expected one or more" + how;
   }
-  const double least = PivotSettings{}.spread_min_rad;
-  if (spread.spread_rad[0] < least) {
+  const double spread_min_rad = PivotSettings{}.spread_min_rad;
+  if (spread.spread_rad[0] < spread_min_rad) {
     return "the touches are alike: the tool's direction " +
-           say_direction(spread.directions.col(0)) + " differs by " +
-           say_degrees(spread.spread_rad[0]) + " rms; expected at least " + say_degrees(least) +
-           ": lean the tool to another side at each touch";
+           format_direction(spread.directions.col(0)) + " differs by " +
+           format_degrees(spread.spread_rad[0]) + " rms; expected at least " +
+           format_degrees(spread_min_rad) + ": lean the tool to another side at each touch";
   }
-  if (rest.seconds < k_rest_min_s) {
-    return "the tool rests for " + say("%.1f s", rest.seconds) +
+  if (static_interval.seconds < k_rest_min_s) {
+    return "the tool rests for " + format_number("%.1f s", static_interval.seconds) +
            " at most; expected 20 s in one place";
   }
   return {};

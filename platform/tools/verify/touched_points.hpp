@@ -1,4 +1,4 @@
-// Classification of holds: touches of the first or second point, and the rest.
+// Classification of static intervals: touches of the first or second point, and the rest.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace glint {
 
 struct TouchedPoints {
   std::vector<Touch> touches;
-  std::vector<bool> is_second;  // touch of the second point
-  Hold rest;                    // the longest hold
+  std::vector<bool> is_second;     // touch of the second point
+  StaticInterval static_interval;  // the longest interval
   int first_count = 0, second_count = 0, other_count = 0;
   RotationSpread spread;  // of the tool, over all touches
 
   // Returns what is missing for a check with this many touches of the first point; empty if
   // complete.
-  [[nodiscard]] std::string lacks(int touches_min) const;
+  [[nodiscard]] std::string missing(int touches_min) const;
 };
 
 // The first point has the most touches; the second is at about this distance from it. A hold as

@@ -55,9 +55,9 @@ Eigen::MatrixXd design_of(const std::vector<bool>& is_second, Eigen::Index point
 
 Check check_of(const PointFit& fit) {
   const auto touches = static_cast<double>(fit.residual.size()) / 3;
-  const auto freedom = static_cast<int>(fit.residual.size() - fit.points.size());
+  const auto degrees_of_freedom = static_cast<int>(fit.residual.size() - fit.points.size());
   return {std::sqrt(fit.measured_m2 / touches), std::sqrt(fit.stated_m2 / touches),
-          chi_square_tail(fit.residual.dot(fit.weight * fit.residual), freedom)};
+          chi_square_tail(fit.residual.dot(fit.weight * fit.residual), degrees_of_freedom)};
 }
 
 // Distance of the two points, and its derivatives by them.
@@ -65,12 +65,12 @@ struct Distance {
   double error_m = 0, sigma_m = 0;
   Eigen::RowVectorXd by_points = Eigen::RowVectorXd(6);
 
-  Distance(const PointFit& fit, const VerifySettings& known) {
+  Distance(const PointFit& fit, const VerifySettings& settings) {
     const Vector3 apart = fit.points.tail<3>() - fit.points.head<3>();
     by_points << -apart.normalized().transpose(), apart.normalized().transpose();
-    error_m = apart.norm() - known.distance_m;
+    error_m = apart.norm() - settings.distance_m;
     sigma_m = std::sqrt((by_points * fit.covariance * by_points.transpose())(0) +
-                        known.distance_sigma_m * known.distance_sigma_m);
+                        settings.distance_sigma_m * settings.distance_sigma_m);
   }
 };
 
@@ -83,17 +83,18 @@ std::vector<CalibrationFinding> findings_of(const TipSeries& series,
 
 // Estimates the calibration errors beside the points; `changing`: covariance of all other errors.
 CalibrationErrors errors_of(const TouchedPoints& touched, const Eigen::MatrixXd& changing,
-                            const Eigen::MatrixXd& columns, const VerifySettings& known) {
+                            const Eigen::MatrixXd& columns, const VerifySettings& settings) {
   const Eigen::VectorXd y = tips_of(touched.touches);
   const Eigen::MatrixXd x = design_of(touched.is_second, 2);
   const PointFit fit(y, x, changing);
-  const Distance distance(fit, known);
+  const Distance distance(fit, settings);
   const Eigen::MatrixXd weighed = fit.weight * (columns - x * (fit.gain * columns));
   const Eigen::VectorXd of_distance =
       (distance.by_points * fit.gain * columns).transpose() / distance.sigma_m;
   CalibrationErrors errors;
   errors.information = columns.transpose() * weighed + of_distance * of_distance.transpose();
-  errors.pull = weighed.transpose() * y + of_distance * (distance.error_m / distance.sigma_m);
+  errors.information_vector =
+      weighed.transpose() * y + of_distance * (distance.error_m / distance.sigma_m);
   errors.fits = static_cast<int>(touched.touches.size());
   for (const Touch& touch : touched.touches) errors.ranges_m += touch.mean.range_m;
   return errors;
@@ -101,35 +102,36 @@ CalibrationErrors errors_of(const TouchedPoints& touched, const Eigen::MatrixXd&
 
 CalibrationErrors sum_of(CalibrationErrors a, const CalibrationErrors& b) {
   a.information += b.information;
-  a.pull += b.pull;
+  a.information_vector += b.information_vector;
   a.ranges_m += b.ranges_m;
   a.fits += b.fits;
   return a;
 }
 
 void check_points(const TouchedPoints& touched, const TipSeries& series,
-                  const VerifySettings& known, Verification& out) {
+                  const VerifySettings& settings, Verification& out) {
   const Eigen::MatrixXd columns = calibration_columns(touched.touches);
-  const Eigen::MatrixXd changing = joint_covariance(touched.touches, series.stated, Places::apart);
+  const Eigen::MatrixXd changing =
+      joint_covariance(touched.touches, series.stated, TouchPositions::apart);
   const PointFit fit(tips_of(touched.touches), design_of(touched.is_second, 2),
                      changing + columns * columns.transpose());
   out.repeatability = check_of(fit);
-  const Distance distance(fit, known);
+  const Distance distance(fit, settings);
   const double sigmas = distance.error_m / distance.sigma_m;
   out.scale = {distance.error_m, distance.sigma_m, chi_square_tail(sigmas * sigmas, 1)};
-  out.distance_m = known.distance_m + distance.error_m;
-  out.calibration =
-      findings_of(series, sum_of(series.residuals, errors_of(touched, changing, columns, known)));
+  out.distance_m = settings.distance_m + distance.error_m;
+  out.calibration = findings_of(
+      series, sum_of(series.residuals, errors_of(touched, changing, columns, settings)));
   for (const Touch& touch : touched.touches)
     out.range_m += touch.mean.range_m / static_cast<double>(touched.touches.size());
 }
 
-Check check_rest(const TipSeries& series, const Hold& rest) {
-  const std::vector<Touch> pieces = pieces_of(series, rest, k_piece_s);
+Check check_rest(const TipSeries& series, const StaticInterval& interval) {
+  const std::vector<Touch> pieces = pieces_of(series, interval, k_piece_s);
   const Eigen::MatrixXd columns = calibration_columns(pieces);
-  return check_of(PointFit(
-      tips_of(pieces), design_of(std::vector<bool>(pieces.size(), false), 1),
-      joint_covariance(pieces, series.stated, Places::same) + columns * columns.transpose()));
+  return check_of(PointFit(tips_of(pieces), design_of(std::vector<bool>(pieces.size(), false), 1),
+                           joint_covariance(pieces, series.stated, TouchPositions::same) +
+                               columns * columns.transpose()));
 }
 
 // Bonferroni: equal significance levels for all checks and all observable calibration errors.
@@ -145,8 +147,8 @@ void decide(Verification& out) {
     out.agrees = out.agrees && check->agrees;
   }
   for (CalibrationFinding& one : out.calibration) {
-    one.named = one.axes > 0 && chi_square_tail(one.chi_square, one.axes) < out.level;
-    out.agrees = out.agrees && !one.named;
+    one.exceeds_stated = one.axes > 0 && chi_square_tail(one.chi_square, one.axes) < out.level;
+    out.agrees = out.agrees && !one.exceeds_stated;
   }
 }
 
@@ -158,32 +160,32 @@ Verification verify_touches(const TipSeries& series, const VerifySettings& setti
   out.first_touches = touched.first_count;
   out.second_touches = touched.second_count;
   out.other_holds = touched.other_count;
-  out.rest_s = touched.rest.seconds;
+  out.rest_s = touched.static_interval.seconds;
   out.spread_rad = touched.spread.spread_rad;
-  out.lacks = touched.lacks(k_touches_min);
-  if (out.lacks.empty()) {
+  out.missing = touched.missing(k_touches_min);
+  if (out.missing.empty()) {
     check_points(touched, series, settings, out);
-    out.rest = check_rest(series, touched.rest);
+    out.rest = check_rest(series, touched.static_interval);
   } else if (series.residuals.fits >= k_fits_min) {
     out.calibration = findings_of(series, series.residuals);
   }
   decide(out);
-  if (!out.lacks.empty() && out.agrees) {
-    throw InputError(series.what + ": " + out.lacks + " (the tool is in " +
-                     std::to_string(series.sightings.size()) + " of " +
+  if (!out.missing.empty() && out.agrees) {
+    throw InputError(series.what + ": " + out.missing + " (the tool is in " +
+                     std::to_string(series.observations.size()) + " of " +
                      std::to_string(series.frames) + " frames)");
   }
   return out;
 }
 
-std::vector<std::string> not_shown(const Verification& verification) {
+std::vector<std::string> not_covered(const Verification& verification) {
   std::vector<std::string> lines = {
       "an error that all touches have in common: where the world or the robot is taken to be",
       "a time error or a delay: tool and head stand still",
       "tracking in motion, in other places and at other ranges than these"};
-  if (verification.lacks.empty()) {
+  if (verification.missing.empty()) {
     const double part = k_two_sided * verification.scale.stated_m / verification.distance_m;
-    lines.push_back("a scale error below " + say("%.2f %%", 100 * part) +
+    lines.push_back("a scale error below " + format_number("%.2f %%", 100 * part) +
                     ": the distance of the points is not known better");
   }
   for (const CalibrationFinding& one : verification.calibration) {

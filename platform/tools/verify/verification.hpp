@@ -37,7 +37,7 @@ struct Verification {
   Vector3 spread_rad = Vector3::Zero();  // spread of the tool's directions, ascending
   // What the recording lacks, if single fits alone show an error; the three checks are then not
   // evaluated.
-  std::string lacks;
+  std::string missing;
   Check repeatability, scale, rest;
   std::vector<CalibrationFinding> calibration;
   double level = 0;  // significance level of each test; a smaller probability disagrees
@@ -49,6 +49,6 @@ struct Verification {
 [[nodiscard]] Verification verify_touches(const TipSeries& series, const VerifySettings& settings);
 
 // Returns what the check does not cover, a line each.
-[[nodiscard]] std::vector<std::string> not_shown(const Verification& verification);
+[[nodiscard]] std::vector<std::string> not_covered(const Verification& verification);
 
 }  // namespace glint

@@ -42,7 +42,7 @@ TEST(Describe, ListsWhatFlowsWithInputsAndFeedbackMarked) {
 TEST(Describe, HasOneSignatureOnEveryCompiler) { EXPECT_EQ(Words::signature, 0x2832764870b6c935u); }
 
 struct SumBandToo {
-  void operator()(const Scaled&, Slice, Sum&) const noexcept {}
+  void operator()(const Scaled&, Partition, Sum&) const noexcept {}
 };
 struct AddUpThree {
   void operator()(const Parts<Sum, 3>&, const Previous<Total>&, Total&) const noexcept {}
@@ -66,7 +66,7 @@ TEST(Describe, ChangesTheSignatureWithTheWiring) {
 
 // A split token's writer is the first copy. A token without a writer is an input (from -1).
 struct Twice {
-  void operator()(const Previous<Parts<Sum, 2>>&, const Latest<Scale>&, Slice,
+  void operator()(const Previous<Parts<Sum, 2>>&, const Latest<Scale>&, Partition,
                   Sum&) const noexcept {}
 };
 

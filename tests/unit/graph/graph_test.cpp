@@ -84,7 +84,7 @@ TEST(Graph, StopsPreparingAtTheFirstFailure) {
 struct UnreadyBand {
   bool is_ready = true;
   Ready prepare() const { return is_ready ? Ready::yes : Ready::no_offset; }
-  void operator()(const Row&, Slice, Sum&) const noexcept {}
+  void operator()(const Row&, Partition, Sum&) const noexcept {}
 };
 
 TEST(Graph, NamesTheCopyOfASplitThatFails) {
@@ -113,9 +113,9 @@ TEST(Graph, ShowsATraceEveryCopyOfEveryNodeInOrder) {
 // Boundary that ends the activation after `node` and records each call.
 struct EndAfter {
   int node;
-  std::vector<int> asked;
+  std::vector<int> go_on_calls;
   bool go_on(int at) {
-    asked.push_back(at);
+    go_on_calls.push_back(at);
     return at < node;
   }
 };
@@ -131,13 +131,13 @@ TEST(Graph, EndsAnActivationAtTheNodeThatItsBoundaryNames) {
     Seen trace{&numbers};
     EndAfter boundary{last, {}};
     EXPECT_EQ(graph.activate_until(trace, boundary), last);
-    std::vector<int> begun, asked;
+    std::vector<int> begun, go_on_calls;
     for (int node = 0; node <= last; ++node) {
       begun.insert(begun.end(), {node, -node});
-      asked.push_back(node);
+      go_on_calls.push_back(node);
     }
     EXPECT_EQ(numbers, begun);
-    EXPECT_EQ(boundary.asked, asked);
+    EXPECT_EQ(boundary.go_on_calls, go_on_calls);
     // An activation that ends early does not advance the feedback.
     const bool whole = last == SmallGraph::node_count - 1;
     EXPECT_EQ(graph.output<Total>().activations, before.activations + (whole ? 1 : 0));
@@ -222,8 +222,9 @@ struct Track {
   int value = 0;
 };
 struct Advance {
-  void operator()(const Previous<Parts<Track, 3>>& last, Slice slice, Track& track) const noexcept {
-    track.value = last.value()[slice.index].value + slice.index + 1;
+  void operator()(const Previous<Parts<Track, 3>>& last, Partition partition,
+                  Track& track) const noexcept {
+    track.value = last.value()[partition.index].value + partition.index + 1;
   }
 };
 

@@ -97,12 +97,12 @@ TEST(LatestModel, WouldFindAMissingMemoryOrder) {
 }
 
 // Faulty reader: takes a slot without checking for a newer one.
-struct Careless : Ordered {
+struct UncheckedReader : Ordered {
   [[nodiscard]] bool fresh() const { return true; }
 };
 
 TEST(LatestModel, WouldFindAReaderThatGoesBackwards) {
-  EXPECT_GT((verdict_of<Careless, 2, 2>().faults), 0);
+  EXPECT_GT((verdict_of<UncheckedReader, 2, 2>().faults), 0);
 }
 
 // Faulty double buffer: the writer may fill the slot that the reader is reading.

@@ -12,7 +12,7 @@
 namespace glint::test::plan_tables_test {
 namespace {
 
-using Tables = PlanTables<WideGraph>;
+using Tables = ScheduleTables<WideGraph>;
 
 constexpr NodeSet set_of(std::initializer_list<int> nodes) {
   NodeSet set = 0;
@@ -23,16 +23,16 @@ constexpr NodeSet set_of(std::initializer_list<int> nodes) {
 // Node 0 is Make, 1 to 5 Spread, 6 to 8 SumUp, 9 Merge. Feedback is the last activation's.
 TEST(Needs, AreAllCopiesOfEachWriterOfThisActivation) {
   EXPECT_EQ(
-      needs<WideGraph>[0], NodeSet { 0 });
+      predecessors<WideGraph>[0], NodeSet { 0 });
   for (std::size_t spread = 1; spread <= 5; ++spread) {
-    EXPECT_EQ(needs<WideGraph>[spread], set_of({0}));
+    EXPECT_EQ(predecessors<WideGraph>[spread], set_of({0}));
   }
   for (std::size_t sum = 6; sum <= 8; ++sum) {
-    EXPECT_EQ(needs<WideGraph>[sum], set_of({1, 2, 3, 4, 5}));
+    EXPECT_EQ(predecessors<WideGraph>[sum], set_of({1, 2, 3, 4, 5}));
   }
-  EXPECT_EQ(needs<WideGraph>[9], set_of({0, 6, 7, 8}));
+  EXPECT_EQ(predecessors<WideGraph>[9], set_of({0, 6, 7, 8}));
   // ScaleRow reads inputs only, AddUp its own last total.
-  EXPECT_EQ(needs<SmallGraph>, (std::array<NodeSet, 4>{0, 1, 1, set_of({1, 2})}));
+  EXPECT_EQ(predecessors<SmallGraph>, (std::array<NodeSet, 4>{0, 1, 1, set_of({1, 2})}));
 }
 
 TEST(PlanTables, TakeNodesInOrderForWorkersThatThereAre) {
@@ -62,7 +62,7 @@ TEST(PlanTables, TakeNoMoreThanTheGraphsNodesForAWorker) {
   for (int i = 0; i < WideGraph::node_count; ++i) EXPECT_TRUE(tables.add(i, 0));
   EXPECT_FALSE(tables.add(3, 0));
   EXPECT_EQ(tables.count[0], 10);
-  EXPECT_FALSE(plan_fault(tables).found());
+  EXPECT_FALSE(schedule_fault(tables).found());
 }
 
 struct Case {
@@ -99,9 +99,9 @@ TEST(PlanFault, NamesTheFirstNodeThatDoesNotFit) {
        PlanError::waits, 6},
   };
   for (const Case& c : cases) {
-    Tables tables = plan_by_rule<WideGraph>(2);
+    Tables tables = default_schedule<WideGraph>(2);
     c.spoil(tables);
-    const PlanFault fault = plan_fault(tables);
+    const PlanFault fault = schedule_fault(tables);
     EXPECT_EQ(fault.error, c.error) << c.name;
     EXPECT_EQ(fault.node, c.node) << c.name;
     EXPECT_EQ(fault.found(), c.error != PlanError::none) << c.name;
@@ -112,7 +112,7 @@ TEST(PlanFault, FindsNoFirstNodeWhereWorkerZeroHasNone) {
   Tables tables;
   tables.workers = 2;
   for (int node = 0; node < WideGraph::node_count; ++node) tables.add(node, 1);
-  EXPECT_EQ(plan_fault(tables).error, PlanError::first_node);
+  EXPECT_EQ(schedule_fault(tables).error, PlanError::first_node);
 }
 
 // Deadlock: each worker's next node needs a node that another worker runs later.
@@ -122,16 +122,16 @@ TEST(PlanFault, FindsWorkersThatWaitForEachOther) {
   for (const int node : {0, 1, 2, 6, 3}) tables.add(node, 0);
   for (const int node : {7, 4, 5}) tables.add(node, 1);
   for (const int node : {8, 9}) tables.add(node, 2);
-  const PlanFault fault = plan_fault(tables);
+  const PlanFault fault = schedule_fault(tables);
   EXPECT_EQ(fault.error, PlanError::waits);
   EXPECT_EQ(fault.node, 6) << "the first worker's next";
 }
 
 TEST(PlanByRule, IsForOneToFourWorkers) {
-  for (const int asked : {-3, 0, 1, 2, 3, 4, 5, 99}) {
-    const Tables tables = plan_by_rule<WideGraph>(asked);
-    EXPECT_EQ(tables.workers, std::clamp(asked, 1, 4));
-    EXPECT_FALSE(plan_fault(tables).found()) << asked;
+  for (const int requested : {-3, 0, 1, 2, 3, 4, 5, 99}) {
+    const Tables tables = default_schedule<WideGraph>(requested);
+    EXPECT_EQ(tables.workers, std::clamp(requested, 1, 4));
+    EXPECT_FALSE(schedule_fault(tables).found()) << requested;
     for (int copy = 0; copy < 5; ++copy) {
       EXPECT_EQ(tables.worker[static_cast<std::size_t>(1 + copy)], copy % tables.workers);
     }

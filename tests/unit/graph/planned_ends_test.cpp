@@ -39,14 +39,14 @@ TEST(PlannedEnds, AfterAnyNodeAsTheSerialExecutorDoes) {
   for (int node = 0; node < WideGraph::node_count; ++node) {
     auto graph = std::make_unique<WideGraph>(), expected = std::make_unique<WideGraph>();
     YieldingRest rest;
-    Planned<WideGraph, YieldingRest> planned(plan_by_rule<WideGraph>(1), rest);
+    Planned<WideGraph, YieldingRest> planned(default_schedule<WideGraph>(1), rest);
     for (const bool whole : {true, false, true}) {
       StopAfter stop{whole ? -1 : node};
       std::vector<int> ran, expected_to_run;
       Ran trace{&ran}, expected_trace{&expected_to_run};
       planned.begin(*graph);
-      const int last = planned.lead(*graph, trace, stop);
-      planned.settle(*graph);
+      const int last = planned.run_leader(*graph, trace, stop);
+      planned.finish_activation(*graph);
       EXPECT_EQ(last, expected->activate_until(expected_trace, stop)) << node;
       EXPECT_EQ(ran, expected_to_run) << node;
       EXPECT_EQ(graph->output<Result>().sum, expected->output<Result>().sum) << node;
@@ -59,20 +59,20 @@ TEST(PlannedEnds, AfterAnyNodeAsTheSerialExecutorDoes) {
 TEST(PlannedEnds, RunNoNodeOnAnotherWorkerAfterwards) {
   auto graph = std::make_unique<WideGraph>();
   CountingRest rest;
-  Planned<WideGraph, CountingRest> planned(plan_by_rule<WideGraph>(2), rest);
+  Planned<WideGraph, CountingRest> planned(default_schedule<WideGraph>(2), rest);
   EXPECT_EQ(planned.workers(), 2);
   for (int activation = 0; activation < 3; ++activation) {
     NoTrace none;
     StopAfter stop{0};
     planned.begin(*graph);
-    EXPECT_EQ(planned.lead(*graph, none, stop), 0);
+    EXPECT_EQ(planned.run_leader(*graph, none, stop), 0);
     const std::uint32_t before = rest.reported;
     std::vector<int> ran;
     Ran trace{&ran};
-    planned.help(*graph, 1, trace);
+    planned.run_worker(*graph, 1, trace);
     EXPECT_TRUE(ran.empty());
     EXPECT_EQ(rest.reported.load(), before + 1) << "worker 0 may wait for it to end";
-    planned.settle(*graph);
+    planned.finish_activation(*graph);
     EXPECT_EQ(graph->output<Result>().sum, Result{}.sum);
   }
   EXPECT_EQ(planned.overruns(), 0U);
@@ -83,16 +83,16 @@ TEST(PlannedEnds, ReportWhatAnotherWorkerWaitsForAndNoMore) {
   for (const int workers : {1, 2}) {
     auto graph = std::make_unique<WideGraph>();
     CountingRest rest;
-    Planned<WideGraph, CountingRest> planned(plan_by_rule<WideGraph>(workers), rest);
+    Planned<WideGraph, CountingRest> planned(default_schedule<WideGraph>(workers), rest);
     NoTrace trace;
     NoBoundary always;
     planned.begin(*graph);
     std::vector<std::thread> others;
     for (int w = 1; w < workers; ++w) {
-      others.emplace_back([&, w] { planned.help(*graph, w, trace); });
+      others.emplace_back([&, w] { planned.run_worker(*graph, w, trace); });
     }
-    EXPECT_EQ(planned.lead(*graph, trace, always), WideGraph::node_count - 1);
-    planned.settle(*graph);
+    EXPECT_EQ(planned.run_leader(*graph, trace, always), WideGraph::node_count - 1);
+    planned.finish_activation(*graph);
     for (std::thread& other : others) other.join();
     // Make, the Spreads, the sum of worker 1, and the end of worker 1.
     EXPECT_EQ(rest.reported.load(), workers == 1 ? 0U : 1U + 5U + 1U + 1U);
@@ -103,14 +103,14 @@ TEST(PlannedEnds, CountTheOverrunsOfEveryWorker) {
   auto graph = std::make_unique<WideGraph>();
   CountingRest rest;
   rest.spins = 3;
-  Planned<WideGraph, CountingRest> planned(plan_by_rule<WideGraph>(2), rest);
+  Planned<WideGraph, CountingRest> planned(default_schedule<WideGraph>(2), rest);
   NoTrace trace;
   NoBoundary always;
   planned.begin(*graph);
-  std::thread other([&] { planned.help(*graph, 1, trace); });
+  std::thread other([&] { planned.run_worker(*graph, 1, trace); });
   while (rest.slept < k_sleeps_max) std::this_thread::yield();
-  EXPECT_EQ(planned.lead(*graph, trace, always), WideGraph::node_count - 1);
-  planned.settle(*graph);
+  EXPECT_EQ(planned.run_leader(*graph, trace, always), WideGraph::node_count - 1);
+  planned.finish_activation(*graph);
   other.join();
   EXPECT_GE(planned.overruns(), 1U);
 }
@@ -129,13 +129,13 @@ struct Right {
 };
 using Fork = Graph<Inputs<>, Outputs<Total, Sum>, Source, Left, Right>;
 
-PlanTables<Fork> fork_plan() {
-  PlanTables<Fork> tables;
+ScheduleTables<Fork> fork_plan() {
+  ScheduleTables<Fork> tables;
   tables.workers = 2;
   tables.add(0, 0);
   tables.add(1, 0);
   tables.add(2, 1);
-  EXPECT_FALSE(plan_fault(tables).found());
+  EXPECT_FALSE(schedule_fault(tables).found());
   return tables;
 }
 
@@ -146,14 +146,14 @@ TEST(PlannedEnds, BeforeTheEndWhereTheOtherWorkersNodeIsMissing) {
   NoTrace trace;
   StopAfter stop{1};
   planned.begin(graph);
-  EXPECT_EQ(planned.lead(graph, trace, stop), 1);
-  planned.help(graph, 1, trace);
-  planned.settle(graph);
+  EXPECT_EQ(planned.run_leader(graph, trace, stop), 1);
+  planned.run_worker(graph, 1, trace);
+  planned.finish_activation(graph);
   EXPECT_EQ(graph.output<Total>().value, 0) << "nothing was fed back";
 }
 
 // Returns false after worker 0's last node, once the other worker has ended.
-struct LateNo {
+struct LateFalseBoundary {
   std::thread* other;
   bool go_on(int at) {
     if (at == 0) return true;
@@ -169,10 +169,10 @@ TEST(PlannedEnds, WithTheLastNodeWhereAllHaveRunBeforeTheBoundarySaidNo) {
   NoTrace trace;
   for (int activation = 1; activation <= 3; ++activation) {
     planned.begin(graph);
-    std::thread other([&] { planned.help(graph, 1, trace); });
-    LateNo late{&other};
-    EXPECT_EQ(planned.lead(graph, trace, late), 2);
-    planned.settle(graph);
+    std::thread other([&] { planned.run_worker(graph, 1, trace); });
+    LateFalseBoundary late{&other};
+    EXPECT_EQ(planned.run_leader(graph, trace, late), 2);
+    planned.finish_activation(graph);
     if (other.joinable()) other.join();
     EXPECT_EQ(graph.output<Total>().value, activation) << "the feedback stays";
     EXPECT_EQ(graph.output<Sum>().value, 1);

@@ -14,7 +14,7 @@
 namespace glint::test::planned_test {
 namespace {
 
-using Tables = PlanTables<WideGraph>;
+using Tables = ScheduleTables<WideGraph>;
 
 // Random order within the data dependencies. Node 0 runs on worker 0, the others on any worker.
 Tables random_plan(int workers, std::mt19937& random) {
@@ -24,7 +24,7 @@ Tables random_plan(int workers, std::mt19937& random) {
   while (std::popcount(run) < WideGraph::node_count) {
     std::vector<int> ready;
     for (int node = 0; node < WideGraph::node_count; ++node) {
-      const NodeSet needed = needs<WideGraph>[static_cast<std::size_t>(node)];
+      const NodeSet needed = predecessors<WideGraph>[static_cast<std::size_t>(node)];
       if ((run >> node & 1u) == 0 && (needed & ~run) == 0) ready.push_back(node);
     }
     const int node = ready[random() % ready.size()];
@@ -40,10 +40,10 @@ int run_once(WideGraph& graph, Planned<WideGraph, YieldingRest>& planned, B& bou
   planned.begin(graph);
   std::vector<std::thread> others;
   for (int w = 1; w < planned.workers(); ++w) {
-    others.emplace_back([&, w] { planned.help(graph, w, trace); });
+    others.emplace_back([&, w] { planned.run_worker(graph, w, trace); });
   }
-  const int last = planned.lead(graph, trace, boundary);
-  planned.settle(graph);
+  const int last = planned.run_leader(graph, trace, boundary);
+  planned.finish_activation(graph);
   for (std::thread& other : others) other.join();
   return last;
 }
@@ -65,7 +65,7 @@ TEST(Planned, GivesTheSameBytesAsTheSerialExecutorByAnyValidPlan) {
   for (const int workers : {1, 2, 4}) {
     for (int plan = 0; plan < 20; ++plan) {
       const Tables tables = random_plan(workers, random);
-      ASSERT_FALSE(plan_fault(tables).found());
+      ASSERT_FALSE(schedule_fault(tables).found());
       auto graph = std::make_unique<WideGraph>();
       YieldingRest rest;
       Planned<WideGraph, YieldingRest> planned(tables, rest);
@@ -79,35 +79,35 @@ TEST(Planned, GivesTheSameBytesAsTheSerialExecutorByAnyValidPlan) {
 }
 
 TEST(Planned, FollowsTheRuleOfTheReferenceExecutorWithoutAPlan) {
-  constexpr Tables tables = plan_by_rule<WideGraph>(2);
-  static_assert(!plan_fault(tables).found());
+  constexpr Tables tables = default_schedule<WideGraph>(2);
+  static_assert(!schedule_fault(tables).found());
   const std::array<std::uint8_t, 10> expected = {0, 0, 1, 0, 1, 0, 0, 1, 0, 0};
   EXPECT_EQ(tables.worker, expected);
 }
 
 TEST(Planned, RefusesAnOrderThatIsNoPermutation) {
-  Tables tables = plan_by_rule<WideGraph>(2);
+  Tables tables = default_schedule<WideGraph>(2);
   tables.order[0][2] = tables.order[0][1];
-  EXPECT_EQ(plan_fault(tables).error, PlanError::ran_twice);
-  tables = plan_by_rule<WideGraph>(2);
+  EXPECT_EQ(schedule_fault(tables).error, PlanError::ran_twice);
+  tables = default_schedule<WideGraph>(2);
   --tables.count[1];
-  EXPECT_EQ(plan_fault(tables).error, PlanError::left_out);
-  EXPECT_EQ(plan_fault(tables).node, 7);
-  tables = plan_by_rule<WideGraph>(2);
+  EXPECT_EQ(schedule_fault(tables).error, PlanError::left_out);
+  EXPECT_EQ(schedule_fault(tables).node, 7);
+  tables = default_schedule<WideGraph>(2);
   tables.order[1][0] = 77;
-  EXPECT_EQ(plan_fault(tables).error, PlanError::unknown_node);
+  EXPECT_EQ(schedule_fault(tables).error, PlanError::unknown_node);
   tables.workers = 5;
-  EXPECT_EQ(plan_fault(tables).error, PlanError::workers);
+  EXPECT_EQ(schedule_fault(tables).error, PlanError::workers);
 }
 
 TEST(Planned, RefusesAnOrderInWhichANodeWaitsForEver) {
-  Tables tables = plan_by_rule<WideGraph>(1);
+  Tables tables = default_schedule<WideGraph>(1);
   std::swap(tables.order[0][9], tables.order[0][8]);  // Merge before a sum that it reads
-  EXPECT_EQ(plan_fault(tables).error, PlanError::waits);
-  EXPECT_EQ(plan_fault(tables).node, 9);
+  EXPECT_EQ(schedule_fault(tables).error, PlanError::waits);
+  EXPECT_EQ(schedule_fault(tables).node, 9);
   std::swap(tables.order[0][9], tables.order[0][8]);
   std::swap(tables.order[0][0], tables.order[0][1]);
-  EXPECT_EQ(plan_fault(tables).error, PlanError::first_node);
+  EXPECT_EQ(schedule_fault(tables).error, PlanError::first_node);
 }
 
 struct StopAfter {
@@ -122,7 +122,7 @@ TEST(Planned, LeavesNoTraceOfAnAbandonedActivationInWhatIsFedBack) {
     auto expected = std::make_unique<WideGraph>();
     auto graph = std::make_unique<WideGraph>();
     YieldingRest rest;
-    Planned<WideGraph, YieldingRest> planned(plan_by_rule<WideGraph>(workers), rest);
+    Planned<WideGraph, YieldingRest> planned(default_schedule<WideGraph>(workers), rest);
     NoTrace trace;
     for (int i = 0; i < 12; ++i) {
       NoBoundary always;
@@ -142,7 +142,7 @@ TEST(Planned, LeavesNoTraceOfAnAbandonedActivationInWhatIsFedBack) {
 TEST(Planned, KeepsTheFeedbackOfAnActivationThatWasLateOnlyAfterItsLastNode) {
   auto graph = std::make_unique<WideGraph>();
   YieldingRest rest;
-  Planned<WideGraph, YieldingRest> planned(plan_by_rule<WideGraph>(1), rest);
+  Planned<WideGraph, YieldingRest> planned(default_schedule<WideGraph>(1), rest);
   for (const double sum : serial_sums(4)) {
     StopAfter stop{WideGraph::node_count - 1};
     EXPECT_EQ(run_once(*graph, planned, stop), WideGraph::node_count - 1);
@@ -150,24 +150,24 @@ TEST(Planned, KeepsTheFeedbackOfAnActivationThatWasLateOnlyAfterItsLastNode) {
   }
 }
 
-// Boundary that returns true `looks` times, then false: the deadline while worker 0 waits.
-struct Patience {
-  std::uint64_t looks;
-  bool go_on(int) noexcept { return looks > 0 && looks-- > 0; }
+// Boundary that returns true `checks_left` times, then false: the deadline while worker 0 waits.
+struct CountedBoundary {
+  std::uint64_t checks_left;
+  bool go_on(int) noexcept { return checks_left > 0 && checks_left-- > 0; }
 };
 
 TEST(Planned, EndsAtItsDeadlineWhileAnotherWorkerIsLateAndWaitsForItOnlyAfterwards) {
   auto graph = std::make_unique<WideGraph>();
   YieldingRest rest{10};
-  Planned<WideGraph, YieldingRest> planned(plan_by_rule<WideGraph>(2), rest);
+  Planned<WideGraph, YieldingRest> planned(default_schedule<WideGraph>(2), rest);
   NoTrace trace;
-  Patience patience{k_sleeps_max + 10};
+  CountedBoundary boundary{k_sleeps_max + 10};
   planned.begin(*graph);
-  const int last = planned.lead(*graph, trace, patience);  // worker 1 was never released
+  const int last = planned.run_leader(*graph, trace, boundary);  // worker 1 was never released
   EXPECT_EQ(last, 1) << "Make and the first Spread ran, the second is worker 1's";
   EXPECT_EQ(planned.overruns(), 1u);
-  std::thread late([&] { planned.help(*graph, 1, trace); });
-  planned.settle(*graph);
+  std::thread late([&] { planned.run_worker(*graph, 1, trace); });
+  planned.finish_activation(*graph);
   late.join();
   EXPECT_EQ(graph->output<Result>().sum, Result{}.sum) << "nothing was fed back";
   NoBoundary always;

@@ -23,7 +23,7 @@ TEST(RateGroup, NotesTheReleaseAndTheVersionsItSampled) {
   Fixture f;
   f.publish(5, 1);
   f.publish(6, 2);
-  const Choice& choice = f.group.release(4'000'000);
+  const ReleaseInputs& choice = f.group.release(4'000'000);
   EXPECT_EQ(choice.group, 3u);
   EXPECT_EQ(choice.activation, 1u);
   EXPECT_EQ(choice.nominal_ns, 4'000'000);
@@ -52,7 +52,7 @@ TEST(RateGroup, StartsWithAnEmptyValueOfVersionZero) {
 
 TEST(RateGroup, ReplaysTheRecordedVersionsAlthoughNewerOnesAreThere) {
   Fixture live;
-  std::array<Choice, 3> recorded;
+  std::array<ReleaseInputs, 3> recorded;
   std::array<int, 3> totals{};
   for (int i = 0; i < 3; ++i) {
     if (i != 1) live.publish(i + 1, static_cast<std::uint64_t>(i) + 1);
@@ -72,7 +72,7 @@ TEST(RateGroup, ReplaysTheRecordedVersionsAlthoughNewerOnesAreThere) {
 
 TEST(RateGroup, SaysWhenARecordedVersionWasNotPublished) {
   Fixture f;
-  Choice recorded = f.group.release(0);
+  ReleaseInputs recorded = f.group.release(0);
   recorded.activation = 2;
   recorded.versions[0] = 7;
   f.publish(5, 6);
@@ -103,19 +103,19 @@ TEST(RateGroup, NotesAndReplaysTheVersionOfEachOfItsInputs) {
   const auto publish = [](auto& buffer, std::uint64_t version) { buffer.publish(version, 0); };
   publish(scales, 11);
   publish(offsets, 21);
-  const Choice first = group.release(1'000);
+  const ReleaseInputs first = group.release(1'000);
   EXPECT_EQ(first.version_count, 2);
   EXPECT_EQ(first.versions[0], 11U);
   EXPECT_EQ(first.versions[1], 21U);
   EXPECT_EQ(group.choice(), first);
   publish(offsets, 22);
-  const Choice second = group.release(2'000);
+  const ReleaseInputs second = group.release(2'000);
   EXPECT_EQ(second.activation, 2U);
   EXPECT_EQ(second.nominal_ns, 2'000);
   EXPECT_EQ(second.versions[0], 11U) << "nothing newer";
   EXPECT_EQ(second.versions[1], 22U);
   // Both inputs have a newer version. A replay changes only the input with another version.
-  Choice recorded = second;
+  ReleaseInputs recorded = second;
   recorded.activation = 9;
   recorded.nominal_ns = 9'000;
   recorded.versions[1] = 23;
@@ -129,7 +129,7 @@ TEST(RateGroup, NotesAndReplaysTheVersionOfEachOfItsInputs) {
 TEST(RateGroup, ReplaysNoChoiceOfAnotherGroupOrOfFewerInputs) {
   for (const bool fewer : {false, true}) {
     Fixture f;
-    Choice recorded = f.group.release(0);
+    ReleaseInputs recorded = f.group.release(0);
     if (fewer) recorded.version_count = 0;
     if (!fewer) ++recorded.group;
     EXPECT_FALSE(f.group.release_as(recorded)) << fewer;

@@ -104,7 +104,7 @@ TEST(RingModel, WouldFindAMissingMemoryOrder) {
 }
 
 // Faulty ring: one slot fewer than the counters admit.
-struct Overfull : graph::RingIndex<2, ModelAtomic<true>> {
+struct UndersizedRing : graph::RingIndex<2, ModelAtomic<true>> {
   using RingIndex::RingIndex;
   [[nodiscard]] int push_slot() const { return 0; }
   [[nodiscard]] int pop_slot() const { return 0; }
@@ -112,7 +112,7 @@ struct Overfull : graph::RingIndex<2, ModelAtomic<true>> {
 
 TEST(RingModel, WouldFindAnOverwrittenItem) {
   Verdict verdict;
-  explore(Model<Overfull, 2, 3, 2>{}, verdict);
+  explore(Model<UndersizedRing, 2, 3, 2>{}, verdict);
   EXPECT_GT(verdict.races, 0);
   EXPECT_GT(verdict.faults, 0);
 }

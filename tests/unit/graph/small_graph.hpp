@@ -40,12 +40,12 @@ struct ScaleRow {
 
 struct SumBand {
   int calls = 0;
-  void operator()(const Scaled& scaled, Slice slice, Sum& sum) noexcept {
+  void operator()(const Scaled& scaled, Partition partition, Sum& sum) noexcept {
     ++calls;
     const int size = static_cast<int>(scaled.numbers.size());
     sum.value = 0;
-    for (int i = slice.index * size / slice.count; i < (slice.index + 1) * size / slice.count;
-         ++i) {
+    for (int i = partition.index * size / partition.count;
+         i < (partition.index + 1) * size / partition.count; ++i) {
       sum.value += scaled.numbers[static_cast<std::size_t>(i)];
     }
   }

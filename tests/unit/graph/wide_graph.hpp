@@ -23,14 +23,14 @@ struct Result {
   std::array<double, 64> values{};
 };
 struct Spread {
-  void operator()(const Narrow& in, const Previous<Result>& last, Slice s, Wide& out) noexcept {
+  void operator()(const Narrow& in, const Previous<Result>& last, Partition s, Wide& out) noexcept {
     for (std::size_t i = static_cast<std::size_t>(s.index); i < 64; i += 5) {
       out.values[i] = in.values[i] * (1.0 + last.value().sum) / (3.0 + s.index);
     }
   }
 };
 struct SumUp {
-  void operator()(const Parts<Wide, 5>& in, Slice s, Partial& out) noexcept {
+  void operator()(const Parts<Wide, 5>& in, Partition s, Partial& out) noexcept {
     out.sum = 0;
     for (int part = 0; part < 5; ++part) {
       for (std::size_t i = static_cast<std::size_t>(s.index); i < 64; i += 3) {

@@ -57,7 +57,7 @@ TEST(Workers, GiveTheSameBytesAsTheSerialExecutor) {
 }
 
 // Thread that ran each node last. Each node has its own entry, so the threads do not race.
-struct Whereabouts {
+struct NodeThreads {
   std::array<std::thread::id, 10>* threads;
   void on_node_begin(int node) noexcept {
     (*threads)[static_cast<std::size_t>(node)] = std::this_thread::get_id();
@@ -70,7 +70,7 @@ TEST(Workers, TakeTheCopiesOfTheirNumberAndLeaveTheRestToTheFirst) {
   std::array<std::thread::id, 10> threads{};
   auto graph = std::make_unique<WideGraph>();
   YieldingRest rest;
-  Workers<2, YieldingRest, Whereabouts> workers(rest, Whereabouts{&threads});
+  Workers<2, YieldingRest, NodeThreads> workers(rest, NodeThreads{&threads});
   workers.begin(*graph);
   std::thread other([&] { workers.run(*graph, 1); });
   const std::thread::id second = other.get_id();

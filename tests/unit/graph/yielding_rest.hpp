@@ -19,6 +19,6 @@ struct YieldingRest {
   }
   void report_progress() const noexcept {}
 };
-static_assert(graph::Rest<YieldingRest>);
+static_assert(graph::WaitPolicy<YieldingRest>);
 
 }  // namespace glint::test

@@ -54,7 +54,7 @@ TEST(StepBudget, EndsAStretchWhereItsStepsEnd) {
       int at = k_from;
       while (at < k_end) {
         StepBudget budget(steps);
-        const int end = budget.end_of(at, k_end, each);
+        const int end = budget.take_items(at, k_end, each);
         EXPECT_EQ(end - at, std::min(k_end - at, std::max(1, steps / each)));
         EXPECT_EQ(budget.left(), steps - (end - at) * each);
         at = end;
@@ -63,35 +63,35 @@ TEST(StepBudget, EndsAStretchWhereItsStepsEnd) {
     }
   }
   StepBudget budget(100);
-  EXPECT_EQ(budget.end_of(4, 4, 3), 4) << "nothing to do";
+  EXPECT_EQ(budget.take_items(4, 4, 3), 4) << "nothing to do";
   EXPECT_EQ(budget.left(), 100);
 }
 
 TEST(SharedBudget, KeepsAShareForEachThatIsStillToCome) {
   SharedBudget budget(10, 4, 3);  // a share for each of four consumers; three are present
   EXPECT_EQ(budget.left(), 40);
-  EXPECT_EQ(budget.most_for_next(), 20);
+  EXPECT_EQ(budget.next_max(), 20);
   budget.spend(5);
   EXPECT_EQ(budget.left(), 35);
-  EXPECT_EQ(budget.most_for_next(), 25);
+  EXPECT_EQ(budget.next_max(), 25);
   budget.spend(25);
-  EXPECT_EQ(budget.most_for_next(), 10) << "the last one has its share";
+  EXPECT_EQ(budget.next_max(), 10) << "the last one has its share";
   budget.spend(10);
   EXPECT_EQ(budget.left(), 0);
 }
 
 TEST(SharedBudget, GivesEachAtLeastItsShareWhateverTheOthersSpend) {
-  constexpr int k_share = 7, k_takers_max = 6;
-  for (int takers = 1; takers <= k_takers_max; ++takers) {
-    SharedBudget budget(k_share, k_takers_max, takers);
+  constexpr int k_share = 7, k_consumers_max = 6;
+  for (int consumers = 1; consumers <= k_consumers_max; ++consumers) {
+    SharedBudget budget(k_share, k_consumers_max, consumers);
     int spent = 0;
-    for (int taker = 0; taker < takers; ++taker) {
-      const int most = budget.most_for_next();
-      EXPECT_GE(most, k_share);
-      budget.spend(most);  // all that it may spend
-      spent += most;
+    for (int consumer = 0; consumer < consumers; ++consumer) {
+      const int limit = budget.next_max();
+      EXPECT_GE(limit, k_share);
+      budget.spend(limit);  // all that it may spend
+      spent += limit;
     }
-    EXPECT_EQ(spent, k_share * k_takers_max);
+    EXPECT_EQ(spent, k_share * k_consumers_max);
   }
 }
 

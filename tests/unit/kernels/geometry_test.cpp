@@ -55,12 +55,12 @@ TEST(TurnBetween, TurnsHalfAroundBetweenOppositeDirectionsAndNotAtAllBetweenEqua
   test::Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
     const Vector3 from = random.vector(1);
-    const Quaternion half = turn_between(from, -2 * from);
+    const Quaternion half = rotation_between(from, -2 * from);
     EXPECT_LT((half * from.normalized() + from.normalized()).norm(), 1e-6);
     EXPECT_NEAR(half.norm(), 1, 1e-14);
-    EXPECT_LT(turn_between(from, 3 * from).vec().norm(), 1e-15);
+    EXPECT_LT(rotation_between(from, 3 * from).vec().norm(), 1e-15);
   }
-  const Quaternion exact = turn_between(Vector3::UnitX(), -Vector3::UnitX());
+  const Quaternion exact = rotation_between(Vector3::UnitX(), -Vector3::UnitX());
   EXPECT_EQ(exact.w(), 0);
   EXPECT_EQ(exact.vec().x(), 0) << "the axis is across the directions";
 }

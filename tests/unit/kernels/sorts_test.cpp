@@ -21,20 +21,20 @@ struct Entry {
   bool operator<(const Entry& other) const { return key < other.key; }
 };
 
-constexpr std::size_t k_room = 70;
+constexpr std::size_t k_capacity = 70;
 
 TEST(MergeSort, LosesAndDoublesNoEntryWhereKeysAreEqual) {
   std::mt19937 random(1);
-  for (int count = 0; count <= static_cast<int>(k_room); ++count) {
+  for (int count = 0; count <= static_cast<int>(k_capacity); ++count) {
     for (const int keys : {1, 2, 5, 1000}) {
-      std::array<Entry, k_room> values{}, spare{};
-      for (int i = 0; i < static_cast<int>(k_room); ++i) {
+      std::array<Entry, k_capacity> values{}, scratch{};
+      for (int i = 0; i < static_cast<int>(k_capacity); ++i) {
         values[static_cast<std::size_t>(i)] = {static_cast<int>(random()) % keys, i};
       }
       const auto before = values;
-      merge_sort(values, spare, count);
+      merge_sort(values, scratch, count);
       EXPECT_TRUE(std::is_sorted(values.begin(), values.begin() + count)) << count;
-      std::vector<bool> seen(k_room);
+      std::vector<bool> seen(k_capacity);
       for (int i = 0; i < count; ++i) {
         const Entry& entry = values[static_cast<std::size_t>(i)];
         ASSERT_LT(entry.number, count);
@@ -42,7 +42,7 @@ TEST(MergeSort, LosesAndDoublesNoEntryWhereKeysAreEqual) {
         seen[static_cast<std::size_t>(entry.number)] = true;
         EXPECT_EQ(entry.key, before[static_cast<std::size_t>(entry.number)].key);
       }
-      for (std::size_t i = static_cast<std::size_t>(count); i < k_room; ++i) {
+      for (std::size_t i = static_cast<std::size_t>(count); i < k_capacity; ++i) {
         EXPECT_EQ(values[i].number, before[i].number) << "behind the values: " << count;
       }
     }
@@ -116,13 +116,13 @@ TEST(TwoDoubles, WorkOnEachLaneByItself) {
   std::array<double, 2> stored{};
   store_two(a, stored.data());
   EXPECT_EQ(stored, left);
-  store_two(lesser(a, b), stored.data());
+  store_two(minimum(a, b), stored.data());
   EXPECT_EQ(stored, (std::array<double, 2>{-5, -4}));
-  store_two(greater(a, b), stored.data());
+  store_two(maximum(a, b), stored.data());
   EXPECT_EQ(stored, (std::array<double, 2>{3, 2.25}));
-  store_two(both(1.5), stored.data());
+  store_two(broadcast_two(1.5), stored.data());
   EXPECT_EQ(stored, (std::array<double, 2>{1.5, 1.5}));
-  store_two(where(a < b, b), stored.data());
+  store_two(keep_lanes(a < b, b), stored.data());
   EXPECT_EQ(stored, (std::array<double, 2>{0, 2.25}));
   store_two(square_root(TwoDoubles{2.25, 16}), stored.data());
   EXPECT_EQ(stored, (std::array<double, 2>{1.5, 4}));
@@ -131,10 +131,10 @@ TEST(TwoDoubles, WorkOnEachLaneByItself) {
 // Also with SIMD lanes: the two zeros are equal, and both functions return the second one.
 TEST(TwoDoubles, GiveTheSecondOfTwoThatAreEqual) {
   for (const double sign : {1.0, -1.0}) {
-    const TwoDoubles a = both(sign * 0.0), b = both(-sign * 0.0);
+    const TwoDoubles a = broadcast_two(sign * 0.0), b = broadcast_two(-sign * 0.0);
     for (int lane = 0; lane < 2; ++lane) {
-      EXPECT_EQ(std::signbit(lesser(a, b)[lane]), std::signbit(-sign));
-      EXPECT_EQ(std::signbit(greater(a, b)[lane]), std::signbit(-sign));
+      EXPECT_EQ(std::signbit(minimum(a, b)[lane]), std::signbit(-sign));
+      EXPECT_EQ(std::signbit(maximum(a, b)[lane]), std::signbit(-sign));
     }
   }
 }

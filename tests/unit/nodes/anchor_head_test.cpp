@@ -36,8 +36,8 @@ class AnchorHeadByABody : public testing::Test {
 
   bool refused_ = false;
   ToolSet set_;
-  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
-      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_partitions>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_partitions>>();
   Anchor last_, out_;
   glint::AnchorHead node_;
 };
@@ -62,7 +62,7 @@ TEST_F(AnchorHeadByABody, CountsTheFramesThatShowTheBody) {
 }
 
 TEST_F(AnchorHeadByABody, TakesNoAmbiguousPoseForTheBodys) {
-  body().odds = k_odds_least - 1;
+  body().odds = k_odds_min - 1;
   for (int i = 1; i < 9; ++i) frame(i);
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
   EXPECT_FALSE(out_.state.known());
@@ -127,13 +127,13 @@ TEST_F(AnchorHeadByABody, LosesItsCorrectionWhereTheClockRestarts) {
   body().reason = Reason::no_labeling;
   const Anchor seen = out_;
   frame(30);
-  const Matrix6 next = out_.now.lasting;
+  const Matrix6 next = out_.now.shared;
   out_ = seen;
   frame(1, true);
   EXPECT_TRUE(out_.state.known());
-  EXPECT_GT(out_.now.lasting.trace(), 10 * next.trace());
-  const Matrix6 uncorrected = out_.state.uncorrected_at(out_.now.pivot_m);
-  EXPECT_NEAR(out_.now.lasting.trace(), uncorrected.trace(), 1e-9 * uncorrected.trace());
+  EXPECT_GT(out_.now.shared.trace(), 10 * next.trace());
+  const Matrix6 uncorrected = out_.state.uncorrected_covariance_at(out_.now.pivot_m);
+  EXPECT_NEAR(out_.now.shared.trace(), uncorrected.trace(), 1e-9 * uncorrected.trace());
 }
 
 }  // namespace

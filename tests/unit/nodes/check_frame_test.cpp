@@ -121,7 +121,7 @@ TEST(CheckFrame, ComparesWithTheNewestAcceptedFrame) {
   (void)check(node, stamp_at(100, 7));
   (void)check(node, stamp_at(90, 3));
   EXPECT_EQ(check(node, stamp_at(90, 3)).reason, Reason::frame_late) << "no frame was doubled";
-  EXPECT_EQ(check(node, stamp_at(100, 8)).reason, Reason::frame_doubled);
+  EXPECT_EQ(check(node, stamp_at(100, 8)).reason, Reason::frame_duplicate);
   FrameStamp invalid = stamp_at(200, 9);
   invalid.reason = Reason::frame_invalid;
   (void)check(node, invalid);
@@ -139,8 +139,8 @@ TEST(CheckFrame, AcceptsFramesInOrder) {
 TEST(CheckFrame, CountsADoubledFrameByStampOrBySequence) {
   CheckFrame node;
   (void)check(node, stamp_at(0, 0));
-  EXPECT_EQ(check(node, stamp_at(0, 1)).reason, Reason::frame_doubled);
-  EXPECT_EQ(check(node, stamp_at(22, 0)).reason, Reason::frame_doubled);
+  EXPECT_EQ(check(node, stamp_at(0, 1)).reason, Reason::frame_duplicate);
+  EXPECT_EQ(check(node, stamp_at(22, 0)).reason, Reason::frame_duplicate);
   EXPECT_EQ(check(node, stamp_at(22, 1)).doubled, 2u);
 }
 
@@ -186,7 +186,7 @@ TEST(CheckFrame, CountsAResynchronisationAndGoesOnByTheNewClock) {
   EXPECT_EQ(verdict.late, static_cast<std::uint64_t>(k_resync_frames - 1));
   EXPECT_EQ(verdict.resynchronisations, 1U);
   const std::int64_t now_ms = 22 * k_resync_frames;
-  EXPECT_EQ(check(node, stamp_at(now_ms, 77)).reason, Reason::frame_doubled);
+  EXPECT_EQ(check(node, stamp_at(now_ms, 77)).reason, Reason::frame_duplicate);
   EXPECT_EQ(check(node, stamp_at(now_ms - 1, 78)).reason, Reason::frame_late);
   verdict = check(node, stamp_at(now_ms + 1, 50));
   EXPECT_TRUE(verdict.usable()) << "the old clock's sequence numbers are gone, too";

@@ -37,21 +37,21 @@ class CorrespondCounts : public testing::Test {
       marker.surface_range_m = seen.norm() - set_->items[tool].centre_offset_m();
     }
   }
-  graph::LoopCounts run(graph::Slice slice) {
+  graph::LoopCounts run(graph::Partition partition) {
     tools_.set(*set_, ++version_, 0);
-    (*node_)(verdict_, *markers_, tools_, *predictions_, slice, *labelings_);
+    (*node_)(verdict_, *markers_, tools_, *predictions_, partition, *labelings_);
     return node_->counts();
   }
   // Calls the kernel directly, with the settings that the prediction implies.
-  CorrespondWork directly(std::size_t tool, Labelings& out) {
+  CorrespondWork run_kernel(std::size_t tool, Labelings& out) {
     const Prediction& prediction = predictions_->tools[tool];
     CorrespondSettings gated = node_->settings;
     gated.markers_max = node_->limits.blobs;
     gated.search_steps_max = node_->limits.search_steps;
     gated.prior_gate_m = node_->settings.prior_gate_m + prediction.reach_m;
     gated.prior_sigma_m = prediction.reach_m / k_reach_sigmas;
-    gated.only_near = prediction.only_near;
-    gated.few_gate_m = prediction.reach_m + 3 * node_->settings.range_sigma_m;
+    gated.only_near = prediction.within_reach_only;
+    gated.partial_gate_m = prediction.reach_m + 3 * node_->settings.range_sigma_m;
     const Pose* prior = prediction.has_prior ? &prediction.T_camera_tool : nullptr;
     return propose_labelings(*markers_, set_->items[tool], gated, prior, *scratch_, out);
   }
@@ -78,9 +78,9 @@ TEST_F(CorrespondCounts, AreTheKernelsOwnAndSoAreTheLabelings) {
     prediction.T_camera_tool = place_of(2);
     prediction.T_camera_tool.translation.x() += 0.004;
     for (const bool only_near : {false, true}) {
-      prediction.only_near = only_near;
+      prediction.within_reach_only = only_near;
       auto expected = std::make_unique<Labelings>();
-      const CorrespondWork work = directly(2, *expected);
+      const CorrespondWork work = run_kernel(2, *expected);
       const graph::LoopCounts counts = run({2, 4});
       EXPECT_EQ(counts, (graph::LoopCounts{{1, 1, work.markers, work.pairs.pairs, work.pairs.tests,
                                             work.pairs.words_written, work.search.steps,
@@ -93,7 +93,7 @@ TEST_F(CorrespondCounts, AreTheKernelsOwnAndSoAreTheLabelings) {
         const auto at = static_cast<std::size_t>(i);
         EXPECT_EQ(found.items[at].marker, expected->items[at].marker);
         EXPECT_EQ(found.items[at].rms_m, expected->items[at].rms_m);
-        EXPECT_EQ(found.items[at].predicted_worth_m2, expected->items[at].predicted_worth_m2);
+        EXPECT_EQ(found.items[at].log_prior_ratio_m2, expected->items[at].log_prior_ratio_m2);
       }
     }
   }
@@ -144,9 +144,9 @@ TEST_F(CorrespondCounts, OfATooLargeToolOrARefusedFrameAreNone) {
   EXPECT_EQ(labelings_->tools[1].count, 0) << "those of the frame before are gone";
   node_->limits.markers_per_tool = 5;
   ASSERT_GT(run({1, 5})[6], 0);
-  verdict_.reason = Reason::frame_doubled;
+  verdict_.reason = Reason::frame_duplicate;
   EXPECT_EQ(run({1, 5}), (graph::LoopCounts{{1}}));
-  EXPECT_EQ(labelings_->tools[1].reason, Reason::frame_doubled);
+  EXPECT_EQ(labelings_->tools[1].reason, Reason::frame_duplicate);
   EXPECT_EQ(labelings_->tools[1].count, 0);
 }
 
@@ -181,11 +181,11 @@ class Assigned : public testing::Test {
     (*node_)(verdict_, tools, *labelings_, *assignment_);
   }
   Labelings& of(int tool) {
-    return (*labelings_)[tool % k_tool_slices].tools[static_cast<std::size_t>(tool)];
+    return (*labelings_)[tool % k_tool_partitions].tools[static_cast<std::size_t>(tool)];
   }
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
-  std::unique_ptr<graph::Parts<ToolLabelings, k_tool_slices>> labelings_ =
-      std::make_unique<graph::Parts<ToolLabelings, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<ToolLabelings, k_tool_partitions>> labelings_ =
+      std::make_unique<graph::Parts<ToolLabelings, k_tool_partitions>>();
   FrameVerdict verdict_;
   std::unique_ptr<Assignment> assignment_ = std::make_unique<Assignment>();
   std::unique_ptr<glint::AssignMarkers> node_ = std::make_unique<glint::AssignMarkers>();
@@ -201,7 +201,7 @@ TEST_F(Assigned, MarkersGoToOneToolAndTheOthersAreToldWhy) {
   of(1).count = 1;
   of(2).reason = Reason::too_few_markers;
   run();
-  EXPECT_EQ(assignment_->reason[0], Reason::taken_by_other);
+  EXPECT_EQ(assignment_->reason[0], Reason::markers_assigned_elsewhere);
   EXPECT_EQ(assignment_->reason[1], Reason::none);
   EXPECT_EQ(assignment_->reason[2], Reason::too_few_markers);
   EXPECT_EQ(assignment_->labeling[1].marker, of(1).items[0].marker);
@@ -220,20 +220,20 @@ TEST_F(Assigned, RivalsAreOfThisFrame) {
   std::swap(of(1).items[1].marker[0], of(1).items[1].marker[1]);
   of(1).count = 2;
   run();
-  EXPECT_EQ(assignment_->rival[1].count, 3);
-  EXPECT_EQ(assignment_->rival[1].marker, of(1).items[1].marker);
+  EXPECT_EQ(assignment_->alternative[1].count, 3);
+  EXPECT_EQ(assignment_->alternative[1].marker, of(1).items[1].marker);
   const std::int64_t with_rival = node_->counts()[3];
   of(1).count = 1;
   run();
-  EXPECT_EQ(assignment_->rival[1].count, 0);
+  EXPECT_EQ(assignment_->alternative[1].count, 0);
   EXPECT_EQ(node_->counts()[3], with_rival - 1);
   of(1).count = 2;
   run();
-  ASSERT_EQ(assignment_->rival[1].count, 3);
+  ASSERT_EQ(assignment_->alternative[1].count, 3);
   of(1).count = 0;
   of(1).reason = Reason::no_labeling;
   run();
-  EXPECT_EQ(assignment_->rival[1].count, 0) << "a tool without a labeling has no rival";
+  EXPECT_EQ(assignment_->alternative[1].count, 0) << "a tool without a labeling has no rival";
 }
 
 // The alternative's first marker is number 0 of the frame, which another tool's labeling holds.
@@ -245,11 +245,11 @@ TEST_F(Assigned, RivalsTakeNoMarkerOfAnotherTool) {
   of(1).items[1].marker[0] = 0;
   of(1).count = 2;
   run();
-  EXPECT_EQ(assignment_->rival[1].count, 0);
+  EXPECT_EQ(assignment_->alternative[1].count, 0);
   of(0).count = 0;
   of(0).reason = Reason::no_labeling;
   run();
-  EXPECT_EQ(assignment_->rival[1].count, 3) << "and in the next frame nobody holds it";
+  EXPECT_EQ(assignment_->alternative[1].count, 3) << "and in the next frame nobody holds it";
 }
 
 TEST_F(Assigned, NothingOfARefusedFrameIs) {

@@ -14,18 +14,18 @@ constexpr int k_side = 32;
 class ExtendMapTest : public testing::Test {
  protected:
   ExtendMapTest() {
-    node_.settings = in_slices(MapSettings{});
+    node_.settings = limited_for_slices(MapSettings{});
     node_.settings.voxels_max = 4'096;
     node_.settings.planes.points_min = 100;
     memory_.resize(MapSlices::bytes(node_.settings));
     node_.memory = memory_;
-    node_.pictures_a_map = 2;
+    node_.images_per_map = 2;
     node_.limits.background_steps = 500;
     EXPECT_EQ(node_.prepare(), Reason::none);
-    shown_.picture.picture = {k_side, k_side, depth_};
-    shown_.picture.camera.width = shown_.picture.camera.height = k_side;
-    shown_.picture.camera.fx = shown_.picture.camera.fy = 40;
-    shown_.picture.camera.cx = shown_.picture.camera.cy = 16;
+    shown_.image.picture = {k_side, k_side, depth_};
+    shown_.image.camera.width = shown_.image.camera.height = k_side;
+    shown_.image.camera.fx = shown_.image.camera.fy = 40;
+    shown_.image.camera.cx = shown_.image.camera.cy = 16;
   }
   // Runs all slices of a depth image, each within the declared maximum. Returns the steps.
   int run(std::uint64_t number) {
@@ -63,7 +63,7 @@ TEST_F(ExtendMapTest, AddsEachPictureOnceAndMakesAMapOfSoMany) {
 TEST_F(ExtendMapTest, MakesAMapWhenItIsAskedTo) {
   (void)run(1);
   ASSERT_EQ(progress_.totals.maps, 0);
-  node_.make_map();
+  node_.start_map();
   EXPECT_FALSE(node_.map().idle());
   EXPECT_GT(run(1), 0);
   EXPECT_EQ(progress_.totals.maps, 1);

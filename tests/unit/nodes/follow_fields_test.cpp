@@ -10,10 +10,10 @@
 namespace glint::follow_fields_test {
 namespace {
 
-// Six tools. Slice 1 of 4 processes tools 1 and 5.
+// Six tools. Partition 1 of 4 processes tools 1 and 5.
 class FollowFields : public testing::Test {
  protected:
-  using Followed = graph::Parts<FollowedTools, k_tool_slices>;
+  using Followed = graph::Parts<FollowedTools, k_tool_partitions>;
 
   FollowFields() {
     set_->count = 6;
@@ -23,7 +23,7 @@ class FollowFields : public testing::Test {
       tool.markers_m = {Vector3(0, 0, 0.1), Vector3(0.06, 0, 0.1), Vector3(0, 0.06, 0.16)};
       tool.tip_m = tool.middle_m();  // so that the covariance is that of the markers' mean
       tool.identity = static_cast<std::uint32_t>(30 + t);
-      FittedTool& fit = (*fitted_)[static_cast<int>(t) % k_tool_slices].tools[t];
+      FittedTool& fit = (*fitted_)[static_cast<int>(t) % k_tool_partitions].tools[t];
       fit.reason = Reason::none;
       fit.T_camera_tool = {random_.rotation(), Vector3(0.1 * static_cast<double>(t), 0, 0.5)};
       fit.covariance = test::random_covariance<6>(random_, 0.0004);
@@ -32,13 +32,13 @@ class FollowFields : public testing::Test {
     anchor_.now.head.T_world_camera = {random_.rotation(), Vector3(1, 2, 3)};
   }
   FittedTool& fit(std::size_t tool) { return (*fitted_)[1].tools[tool]; }
-  const FollowedTool& frame(std::int64_t ms, std::size_t place = 0) {
+  const TrackedTool& frame(std::int64_t ms, std::size_t place = 0) {
     verdict_.stamp.mid_exposure = Time{} + milliseconds(ms);
     graph::Latest<ToolSet> tools;
     tools.set(*set_, 1, 0);
     (*last_)[1] = *followed_;
     node_(verdict_, anchor_, tools, *fitted_, *few_, graph::Previous<Followed>(*last_),
-          {1, k_tool_slices}, *followed_);
+          {1, k_tool_partitions}, *followed_);
     return followed_->items[place];
   }
   static Matrix6 pose_covariance(const MotionState& state) {
@@ -56,8 +56,8 @@ class FollowFields : public testing::Test {
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
   FrameVerdict verdict_;
   Anchor anchor_;
-  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
-      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_partitions>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_partitions>>();
   std::unique_ptr<SeenFew> few_ = std::make_unique<SeenFew>();
   std::unique_ptr<Followed> last_ = std::make_unique<Followed>();
   std::unique_ptr<FollowedTools> followed_ = std::make_unique<FollowedTools>();
@@ -68,7 +68,7 @@ TEST_F(FollowFields, OfASliceAreItsToolsInOrder) {
   (void)frame(22);
   for (const std::size_t place : {0U, 1U}) {
     const std::size_t t = 1 + 4 * place;
-    const FollowedTool& tool = followed_->items[place];
+    const TrackedTool& tool = followed_->items[place];
     EXPECT_EQ(tool.identity, 30 + t);
     EXPECT_TRUE(tool.in_use);
     EXPECT_EQ(tool.reason, Reason::none);
@@ -100,18 +100,18 @@ TEST_F(FollowFields, BeyondTheSlicesToolsAreAsTheyWereMade) {
 
 // After the first pose: its covariance, rotated into the world, plus the head's fresh error.
 TEST_F(FollowFields, OfAFirstPoseAreItsCovarianceTurnedAndTheHeadsFreshError) {
-  anchor_.now.fresh = test::random_covariance<6>(random_, 0.0003);
+  anchor_.now.independent = test::random_covariance<6>(random_, 0.0003);
   anchor_.now.pivot_m = Vector3(2, 2, 2);
   const Pose& head = anchor_.now.head.T_world_camera;
-  const FollowedTool& tool = frame(22);
+  const TrackedTool& tool = frame(22);
   const Vector3 place = head * (fit(1).T_camera_tool * set_->items[1].middle_m());
   const Matrix6 lever = pose_by_pose(place - anchor_.now.pivot_m);
-  const Matrix6 expected = turned_covariance(fit(1).covariance, head.rotation) +
-                           lever * anchor_.now.fresh * lever.transpose();
+  const Matrix6 expected = rotated_covariance(fit(1).covariance, head.rotation) +
+                           lever * anchor_.now.independent * lever.transpose();
   EXPECT_LT((pose_covariance(tool.estimate) - expected).norm(), 1e-12);
   *followed_ = {};
   anchor_.now.head.valid = false;
-  const FollowedTool& camera = frame(22);
+  const TrackedTool& camera = frame(22);
   EXPECT_EQ(camera.base, ReferenceFrame::camera);
   EXPECT_LT((pose_covariance(camera.estimate) - fit(1).covariance).norm(), 1e-15);
 }
@@ -121,7 +121,7 @@ TEST_F(FollowFields, OfErrorsThatPosesShareAreTurnedIntoTheWorld) {
   fit(1).systematic.correlated.slow = test::random_covariance<6>(random_, 0.002);
   const Matrix6 sum = fit(1).systematic.correlated.sum();
   const Quaternion& turn = anchor_.now.head.T_world_camera.rotation;
-  EXPECT_LT((frame(22).correlated_covariance - turned_covariance(sum, turn)).norm(), 1e-12);
+  EXPECT_LT((frame(22).correlated_covariance - rotated_covariance(sum, turn)).norm(), 1e-12);
   *followed_ = {};
   anchor_.now.head.valid = false;
   EXPECT_LT((frame(22).correlated_covariance - sum).norm(), 1e-12);
@@ -130,14 +130,14 @@ TEST_F(FollowFields, OfErrorsThatPosesShareAreTurnedIntoTheWorld) {
 // Publishes the filter's pose where the markers alone leave a rotation undetermined: for each axis,
 // at the limit and just above it.
 TEST_F(FollowFields, AreTheFiltersWhereTheMarkersAloneLeaveATurnOpen) {
-  const double limit = node_.sure.rotation_rad * node_.sure.rotation_rad;
+  const double limit = node_.precision_limits.rotation_rad * node_.precision_limits.rotation_rad;
   int number = 0;
   for (int axis = 3; axis < 6; ++axis) {
     for (const double share : {1.0, 1.001}) {
       fit(1).covariance = Matrix6::Identity() * 1e-8;
       fit(1).covariance(axis, axis) = share * limit;
-      EXPECT_EQ(frame(22 * ++number).filtered, share > 1) << axis;
-      EXPECT_EQ(followed_->items[1].filtered, false);
+      EXPECT_EQ(frame(22 * ++number).use_filter_pose, share > 1) << axis;
+      EXPECT_EQ(followed_->items[1].use_filter_pose, false);
     }
   }
 }
@@ -145,14 +145,14 @@ TEST_F(FollowFields, AreTheFiltersWhereTheMarkersAloneLeaveATurnOpen) {
 // One visible marker of a tracked tool, in its base frame.
 class FollowFew : public FollowFields {
  protected:
-  void know() {
+  void track_tool() {
     for (int i = 1; i <= 5; ++i) (void)frame(22 * i);
     fit(1).reason = Reason::no_labeling;
     few_->tools[1].count = 1;
     few_->tools[1].items[0] = {2, fit(1).T_camera_tool * set_->items[1].markers_m[2],
                                Matrix3::Identity() * 1e-8};
   }
-  [[nodiscard]] double place_variance(const FollowedTool& tool) const {
+  [[nodiscard]] double place_variance(const TrackedTool& tool) const {
     return pose_covariance(tool.estimate).topLeftCorner<3, 3>().trace();
   }
 };
@@ -162,40 +162,40 @@ TEST_F(FollowFew, MovesOnItsMotionItsNoiseAndItsMask) {
     *followed_ = {};
     fit(1).reason = Reason::none;
     anchor_.now.head.valid = head;
-    know();
+    track_tool();
     const MotionState before = followed_->items[0].estimate;
-    const FollowedTool& tool = frame(132);
-    EXPECT_EQ(tool.few_mask, 0b100);
+    const TrackedTool& tool = frame(132);
+    EXPECT_EQ(tool.partial_mask, 0b100);
     EXPECT_EQ(tool.reason, Reason::no_labeling);
     EXPECT_EQ(tool.estimate.time, Time{} + milliseconds(132));
     EXPECT_LT((tool.estimate.pose.translation - before.pose.translation).norm(), 0.002);
-    const NoiseScale noise = tool.motion.partial_noise_scale(node_.settings);
+    const NoiseScale noise = tool.motion.partial_visibility_noise_scale(node_.settings);
     EXPECT_EQ(tool.noise.linear, noise.linear);
     EXPECT_EQ(tool.noise.angular, noise.angular);
     EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 2, 2, node_.counts()[3]}}));
-    EXPECT_EQ(followed_->items[1].few_mask, 0);
+    EXPECT_EQ(followed_->items[1].partial_mask, 0);
   }
 }
 
 TEST_F(FollowFew, IsLessSureWhereTheHeadOrTheMarkerIs) {
-  know();
+  track_tool();
   const FollowedTools known = *followed_;
   const double sure = place_variance(frame(132));
   *followed_ = known;
-  anchor_.now.fresh.diagonal().head<3>().setConstant(1e-4);
+  anchor_.now.independent.diagonal().head<3>().setConstant(1e-4);
   const double by_head = place_variance(frame(132));
   EXPECT_GT(by_head, 2 * sure);
   *followed_ = known;
-  anchor_.now.fresh.setZero();
+  anchor_.now.independent.setZero();
   few_->tools[1].items[0].covariance_m2 = Matrix3::Identity() * 1e-4;
   EXPECT_NEAR(place_variance(frame(132)), by_head, 0.3 * by_head);
 }
 
 // Along the camera's axis the marker's variance is large, so the tool's stays large along it.
 TEST_F(FollowFew, TurnsAMarkersCovarianceIntoTheWorld) {
-  know();
+  track_tool();
   few_->tools[1].items[0].covariance_m2 = Vector3(1e-8, 1e-8, 1).asDiagonal();
-  const FollowedTool& tool = frame(132);
+  const TrackedTool& tool = frame(132);
   const Quaternion& turn = anchor_.now.head.T_world_camera.rotation;
   const Matrix3 place = pose_covariance(tool.estimate).topLeftCorner<3, 3>();
   const auto variance = [&](const Vector3& axis) {
@@ -214,7 +214,7 @@ TEST_F(FollowFields, InTheCamerasFrameStayWhereTheWorldMoves) {
     anchor_.now.head.valid = head;
     (void)frame(22);
     const Vector3 before = followed_->items[0].motion.place();
-    anchor_.now.moved.translation = {0.5, 0, 0};
+    anchor_.now.gap_correction.translation = {0.5, 0, 0};
     anchor_.now.moved_along = true;
     fit(1).reason = Reason::no_labeling;
     const Vector3 moved = frame(44).motion.place() - before;

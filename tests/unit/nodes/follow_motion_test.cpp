@@ -13,7 +13,7 @@ constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.004;
 
 class FollowMotion : public testing::Test {
  protected:
-  using Followed = graph::Parts<FollowedTools, k_tool_slices>;
+  using Followed = graph::Parts<FollowedTools, k_tool_partitions>;
 
   FollowMotion() {
     Tool& tool = set_->items[0];
@@ -44,10 +44,10 @@ class FollowMotion : public testing::Test {
     tool.covariance = seen.covariance;
     FollowedTools out;
     node_(verdict, anchor_, tools_, *fitted_, few_, graph::Previous<Followed>(*last_),
-          {0, k_tool_slices}, out);
+          {0, k_tool_partitions}, out);
     return out;
   }
-  const FollowedTool& tool() { return followed_->items[0]; }
+  const TrackedTool& tool() { return followed_->items[0]; }
 
   test::Random random_{1};
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
@@ -57,8 +57,8 @@ class FollowMotion : public testing::Test {
   bool refused_ = false, restarted_ = false;
   int number_ = 1;
   double shift_sigma_m_ = k_shift_sigma, turn_sigma_rad_ = k_turn_sigma;
-  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
-      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_partitions>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_partitions>>();
   SeenFew few_;
   std::unique_ptr<Followed> last_ = std::make_unique<Followed>();
   std::unique_ptr<FollowedTools> followed_ = std::make_unique<FollowedTools>();
@@ -69,7 +69,7 @@ TEST_F(FollowMotion, KnowsARestingToolsMiddleInTheWorldBetterThanOneFrameCan) {
   for (int i = 0; i < 90; ++i) frame();
   const Pose T_world_tool = anchor_.now.head.T_world_camera * T_camera_tool_;
   const Vector3 middle = T_world_tool * set_->items[0].middle_m();
-  EXPECT_TRUE(tool().motion.rests());
+  EXPECT_TRUE(tool().motion.is_static());
   EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0003);
   EXPECT_LT(test::angle_between(tool().estimate.pose.rotation, T_world_tool.rotation), 0.002);
   EXPECT_LT(tool().estimate.covariance(0, 0), 0.1 * k_shift_sigma * k_shift_sigma);
@@ -102,7 +102,7 @@ TEST_F(FollowMotion, IsAsIfAnAbandonedFrameHadNeverBeen) {
     if (number_ > 1) (void)tried(true, aside);
     frame();
   }
-  EXPECT_TRUE(tool().motion.rests()) << "the steps aside ended no rest";
+  EXPECT_TRUE(tool().motion.is_static()) << "the steps aside ended no rest";
   const Pose T_world_tool = anchor_.now.head.T_world_camera * T_camera_tool_;
   const Vector3 middle = T_world_tool * set_->items[0].middle_m();
   EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0003);
@@ -129,20 +129,20 @@ TEST_F(FollowMotion, BeginsAnewInTheCamerasFrameWhenTheHeadsPoseGoesMissing) {
   anchor_.now.head.valid = false;
   frame();
   EXPECT_EQ(tool().base, ReferenceFrame::camera);
-  EXPECT_FALSE(tool().motion.rests());
+  EXPECT_FALSE(tool().motion.is_static());
   EXPECT_LT((tool().estimate.pose.translation - T_camera_tool_ * set_->items[0].middle_m()).norm(),
             0.005);
 }
 
 TEST_F(FollowMotion, GoesOnRestingWhenTheWorldIsFoundToLieElsewhere) {
   for (int i = 0; i < 60; ++i) frame();
-  AnchoredHead& now = anchor_.now;
-  now.moved = {from_rotation_vector(Vector3(0, 0, 0.01)), Vector3(0.02, 0, 0)};
+  CorrectedHead& now = anchor_.now;
+  now.gap_correction = {from_rotation_vector(Vector3(0, 0, 0.01)), Vector3(0.02, 0, 0)};
   now.moved_along = true;
-  now.head.T_world_camera = now.moved * now.head.T_world_camera;
+  now.head.T_world_camera = now.gap_correction * now.head.T_world_camera;
   frame();
   now.moved_along = false;
-  EXPECT_TRUE(tool().motion.rests());
+  EXPECT_TRUE(tool().motion.is_static());
   const Vector3 middle = now.head.T_world_camera * T_camera_tool_ * set_->items[0].middle_m();
   EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0005);
 }
@@ -150,14 +150,14 @@ TEST_F(FollowMotion, GoesOnRestingWhenTheWorldIsFoundToLieElsewhere) {
 // The reference body is hidden: the world frame may jump by centimetres a frame.
 TEST_F(FollowMotion, KnowsHowSureItIsWhereTheWorldStepsBetweenFrames) {
   constexpr double k_step_m = 0.02;
-  AnchoredHead& now = anchor_.now;
+  CorrectedHead& now = anchor_.now;
   double chi_square = 0, off = 0;
   constexpr int k_frames = 200;
   for (int i = 0; i < 60; ++i) frame();
   for (int i = 0; i < k_frames; ++i) {
     now.head.T_world_camera.translation += random_.vector(k_step_m);
     now.in_gap = true;
-    now.stepped.diagonal().head<3>().setConstant(k_step_m * k_step_m);
+    now.step_covariance.diagonal().head<3>().setConstant(k_step_m * k_step_m);
     frame();
     const Vector3 middle = now.head.T_world_camera * T_camera_tool_ * set_->items[0].middle_m();
     const Vector3 error = tool().estimate.pose.translation - middle;
@@ -174,13 +174,13 @@ TEST_F(FollowMotion, CountsTheHeadsFreshErrorAmongTheNoise) {
   for (int i = 0; i < 4; ++i) frame();
   const double sure = tool().estimate.covariance(0, 0);
   *last_ = {};
-  anchor_.now.fresh = Matrix6::Identity() * 4e-6;
+  anchor_.now.independent = Matrix6::Identity() * 4e-6;
   for (int i = 0; i < 4; ++i) frame();
   EXPECT_GT(tool().estimate.covariance(0, 0), 2 * sure);
 }
 
 // The tool's first `count` markers at their true positions.
-void show_few(const Tool& tool, const Pose& T_camera_tool, int count, SeenFew& few) {
+void show_first_markers(const Tool& tool, const Pose& T_camera_tool, int count, SeenFew& few) {
   few.tools[0].count = count;
   for (int m = 0; m < count; ++m) {
     const auto i = static_cast<std::size_t>(m);
@@ -192,33 +192,33 @@ TEST_F(FollowMotion, GoesOnByOneOrTwoMarkersAndSaysWhich) {
   for (int i = 0; i < 60; ++i) frame();
   for (int i = 0; i < 9; ++i) {
     T_camera_tool_.translation.x() += 0.002;
-    show_few(set_->items[0], T_camera_tool_, 2, few_);
+    show_first_markers(set_->items[0], T_camera_tool_, 2, few_);
     frame(false);
     EXPECT_EQ(tool().reason, Reason::no_labeling);
-    EXPECT_EQ(tool().few_mask, 0b011);
+    EXPECT_EQ(tool().partial_mask, 0b011);
     EXPECT_EQ(tool().estimate.time, Time{} + milliseconds(22) * (number_ - 1));
   }
   const Vector3 marker =
       anchor_.now.head.T_world_camera * T_camera_tool_ * set_->items[0].markers_m[0];
   const Pose& middle = tool().estimate.pose;
-  const Vector3 foretold = middle * (set_->items[0].markers_m[0] - set_->items[0].middle_m());
-  EXPECT_LT((foretold - marker).norm(), 0.001);
+  const Vector3 predicted = middle * (set_->items[0].markers_m[0] - set_->items[0].middle_m());
+  EXPECT_LT((predicted - marker).norm(), 0.001);
   few_ = {};
   frame();
-  EXPECT_EQ(tool().few_mask, 0);
+  EXPECT_EQ(tool().partial_mask, 0);
 }
 
 // The static window's mean does not contain the jump of the world frame since.
 TEST_F(FollowMotion, GoesOnFromARestByTwoMarkersWhereTheWorldHasStepped) {
   for (int i = 0; i < 60; ++i) frame();
-  ASSERT_TRUE(tool().motion.rests());
-  AnchoredHead& now = anchor_.now;
+  ASSERT_TRUE(tool().motion.is_static());
+  CorrectedHead& now = anchor_.now;
   now.head.T_world_camera.translation.x() += 0.02;
   now.in_gap = true;
-  now.stepped.diagonal().head<3>().setConstant(4e-4);
-  show_few(set_->items[0], T_camera_tool_, 2, few_);
+  now.step_covariance.diagonal().head<3>().setConstant(4e-4);
+  show_first_markers(set_->items[0], T_camera_tool_, 2, few_);
   frame(false);
-  EXPECT_EQ(tool().few_mask, 0b011);
+  EXPECT_EQ(tool().partial_mask, 0b011);
   const Pose T_world_tool = now.head.T_world_camera * T_camera_tool_;
   const Vector3 error = tool().estimate.pose.translation - T_world_tool * set_->items[0].middle_m();
   EXPECT_LT(error.norm(), 0.001);
@@ -226,29 +226,30 @@ TEST_F(FollowMotion, GoesOnFromARestByTwoMarkersWhereTheWorldHasStepped) {
 
 TEST_F(FollowMotion, LetsAPoseByOneMarkerStandOnlyWhileItIsSure) {
   for (int i = 0; i < 60; ++i) frame();
-  show_few(set_->items[0], T_camera_tool_, 1, few_);
+  show_first_markers(set_->items[0], T_camera_tool_, 1, few_);
   frame(false);
-  EXPECT_TRUE(tool().stands);
-  int standing = 1;
+  EXPECT_TRUE(tool().is_publishable);
+  int publishable_count = 1;
   for (int i = 0; i < 40; ++i) {
     frame(false);
-    standing += tool().stands ? 1 : 0;
+    publishable_count += tool().is_publishable ? 1 : 0;
     const MotionCovariance& p = tool().estimate.covariance;
     double most_m = 0, most_rad = 0;
     for (int axis = 0; axis < 3; ++axis) {
       most_m = std::max(most_m, std::sqrt(p(axis, axis)));
       most_rad = std::max(most_rad, std::sqrt(p(k_rotation + axis, k_rotation + axis)));
     }
-    EXPECT_EQ(tool().stands, most_m <= 0.005 && most_rad <= 0.065) << most_m << ' ' << most_rad;
+    EXPECT_EQ(tool().is_publishable, most_m <= 0.005 && most_rad <= 0.065)
+        << most_m << ' ' << most_rad;
   }
-  EXPECT_LT(standing, 30) << "what turns about the marker shows nowhere";
-  EXPECT_NE(tool().few_mask, 0) << "it is followed all the same";
+  EXPECT_LT(publishable_count, 30) << "what turns about the marker shows nowhere";
+  EXPECT_NE(tool().partial_mask, 0) << "it is followed all the same";
 }
 
 TEST_F(FollowMotion, LetsAPoseStandOnlyWithinBothLimits) {
   struct Case {
     double position_m, rotation_rad;
-    bool stands;
+    bool is_publishable;
   };
   for (const Case& c : {Case{0.0045, 0.060, true}, Case{0.0055, 0.060, false},
                         Case{0.0045, 0.070, false}, Case{0.0055, 0.070, false}}) {
@@ -261,40 +262,40 @@ TEST_F(FollowMotion, LetsAPoseStandOnlyWithinBothLimits) {
     tools_.set(*set_, 1, 0);
     frame();
     EXPECT_EQ(tool().reason, Reason::none);
-    EXPECT_EQ(tool().stands, c.stands) << c.position_m << ' ' << c.rotation_rad;
+    EXPECT_EQ(tool().is_publishable, c.is_publishable) << c.position_m << ' ' << c.rotation_rad;
   }
 }
 
 TEST_F(FollowMotion, LetsNoAmbiguousPoseStandHoweverSureItIs) {
   for (int i = 0; i < 20; ++i) frame();
-  ASSERT_TRUE(tool().stands);
+  ASSERT_TRUE(tool().is_publishable);
   const Time before = tool().estimate.time;
-  (*fitted_)[0].tools[0].odds = k_odds_least - 1;
+  (*fitted_)[0].tools[0].odds = k_odds_min - 1;
   frame();
   EXPECT_TRUE(tool().ambiguous);
-  EXPECT_FALSE(tool().stands);
+  EXPECT_FALSE(tool().is_publishable);
   EXPECT_GT(tool().estimate.time, before) << "but it is followed";
 }
 
 TEST_F(FollowMotion, BeginsAnewWhereThePoseIsNotTheOneThatWasFollowed) {
   for (int i = 0; i < 90; ++i) frame();
-  ASSERT_TRUE(tool().motion.rests());
-  (*fitted_)[0].tools[0].turned = true;
+  ASSERT_TRUE(tool().motion.is_static());
+  (*fitted_)[0].tools[0].contradicts_track = true;
   frame();
-  EXPECT_FALSE(tool().motion.rests());
+  EXPECT_FALSE(tool().motion.is_static());
   EXPECT_EQ(tool().noise.linear, NoiseScale{}.linear);
 }
 
 TEST_F(FollowMotion, LetsNoPoseOfAFrameStandInTheNext) {
   for (int i = 0; i < 9; ++i) frame();
-  ASSERT_TRUE(tool().stands);
+  ASSERT_TRUE(tool().is_publishable);
   frame(false);
-  EXPECT_FALSE(tool().stands) << "nothing was found";
+  EXPECT_FALSE(tool().is_publishable) << "nothing was found";
   frame();
-  ASSERT_TRUE(tool().stands);
+  ASSERT_TRUE(tool().is_publishable);
   refused_ = true;
   frame();
-  EXPECT_FALSE(tool().stands) << "the frame was refused";
+  EXPECT_FALSE(tool().is_publishable) << "the frame was refused";
 }
 
 // The time stamps restart, either before the newest processed one or shortly after it.
@@ -303,7 +304,7 @@ TEST_F(FollowMotion, BeginsAnewWhereTheClockRestarts) {
     *last_ = {};
     number_ = 1;
     for (int i = 0; i < 60; ++i) frame();
-    ASSERT_TRUE(tool().motion.rests());
+    ASSERT_TRUE(tool().motion.is_static());
     number_ = restarted_at;
     restarted_ = true;
     T_camera_tool_.translation.x() += 0.1;
@@ -319,18 +320,18 @@ TEST_F(FollowMotion, BeginsAnewWhereTheClockRestarts) {
 }
 
 TEST_F(FollowMotion, TakesNoMarkerForAToolThatItDoesNotKnow) {
-  show_few(set_->items[0], T_camera_tool_, 2, few_);
+  show_first_markers(set_->items[0], T_camera_tool_, 2, few_);
   frame(false);
-  EXPECT_EQ(tool().few_mask, 0);
+  EXPECT_EQ(tool().partial_mask, 0);
   for (int i = 0; i < 9; ++i) frame();
   anchor_.now.head.valid = false;
   frame(false);
-  EXPECT_EQ(tool().few_mask, 0) << "in another frame than it was followed in";
+  EXPECT_EQ(tool().partial_mask, 0) << "in another frame than it was followed in";
 }
 
 TEST_F(FollowMotion, BeginsAnewWhereAnotherToolTookThePlace) {
   for (int i = 0; i < 60; ++i) frame();
-  ASSERT_TRUE(tool().motion.rests());
+  ASSERT_TRUE(tool().motion.is_static());
   set_->items[0].identity = 7;
   tools_.set(*set_, 2, 0);
   refused_ = true;

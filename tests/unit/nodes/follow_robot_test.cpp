@@ -11,8 +11,8 @@
 namespace glint {
 namespace {
 
+using test::BoxArm;
 using test::k_truth;
-using test::Model;
 using test::SampledModel;
 
 constexpr int k_all = 1 << 28;  // steps that finish a depth image in one slice
@@ -46,11 +46,11 @@ class FollowRobotTest : public testing::Test {
     node.T_world_robot.translation.x() += 0.003;
     node.covariance = Matrix6::Identity() * 1e-4;
     node.pixels_max = static_cast<int>(depth_.size());
-    node.limits.reference_steps = steps;
+    node.limits.tracking_steps = steps;
     EXPECT_EQ(node.prepare(), Reason::none);
     return node;
   }
-  [[nodiscard]] ShownDepth picture(int number, ShownDepth::Links links) const {
+  [[nodiscard]] ShownDepth depth_image(int number, ShownDepth::Links links) const {
     ShownDepth out;
     out.scene = {camera_, depth_};
     out.links = links;
@@ -73,7 +73,7 @@ class FollowRobotTest : public testing::Test {
     return static_cast<int>(links_.size()) * k_posed_item_steps_max;  // a new link each time
   }
 
-  const Model model_;
+  const BoxArm model_;
   SampledModel sampled_{model_, 0.006f};
   std::vector<std::uint16_t> links_;
   const Pinhole camera_{160, 120, 150, 150, 80, 60};
@@ -87,9 +87,9 @@ class FollowRobotInSlices : public FollowRobotTest, public testing::WithParamInt
 TEST_P(FollowRobotInSlices, IsPosedBeforeItIsLookedFor) {
   FollowRobot posed = node(k_all, {&shown_, 1}), node = this->node(GetParam(), {&given_, 0});
   RobotProgress expected, progress;
-  run(posed, picture(1, {&shown_, 1}), expected);
+  run(posed, depth_image(1, {&shown_, 1}), expected);
   ASSERT_EQ(expected.followed, 1);
-  run(node, picture(1, {&shown_, 1}), progress);
+  run(node, depth_image(1, {&shown_, 1}), progress);
   EXPECT_EQ(progress.followed, 1) << name_of(progress.last);
   EXPECT_EQ(progress.frame.T_world_robot.translation, expected.frame.T_world_robot.translation);
   EXPECT_EQ(progress.frame.T_world_robot.rotation.coeffs(),
@@ -102,14 +102,14 @@ INSTANTIATE_TEST_SUITE_P(OfAnySize, FollowRobotInSlices, testing::Values(1, 999,
 TEST_F(FollowRobotTest, HoldsThePictureAndSaysNothingOfItWhileItIsPosed) {
   constexpr int k_slice = 1'000;
   FollowRobot node = this->node(k_slice, {&given_, 0});
-  const ShownDepth shown = picture(1, {&shown_, 1});
+  const ShownDepth shown = depth_image(1, {&shown_, 1});
   RobotProgress progress;
   for (int posed = 0; posed + k_slice < posing_steps(); posed += progress.steps) {
     node(shown, progress);
     ASSERT_FALSE(progress.free);
     ASSERT_LT(progress.steps, k_slice + k_posed_item_steps_max);
   }
-  EXPECT_EQ(progress.followed + progress.unsure + progress.jumps, 0);
+  EXPECT_EQ(progress.followed + progress.inconclusive + progress.jumps, 0);
   run(node, shown, progress);
   EXPECT_EQ(progress.followed, 1);
 }
@@ -117,7 +117,7 @@ TEST_F(FollowRobotTest, HoldsThePictureAndSaysNothingOfItWhileItIsPosed) {
 TEST_F(FollowRobotTest, IsLookedForByTheStepsThatPosingLeavesASlice) {
   FollowRobot node = this->node(posing_steps() + 1'000, {&given_, 0});
   RobotProgress progress;
-  node(picture(1, {&shown_, 1}), progress);
+  node(depth_image(1, {&shown_, 1}), progress);
   EXPECT_FALSE(progress.free);
   EXPECT_GE(progress.steps, posing_steps() + 1'000);
   EXPECT_TRUE(graph::within(node.counts(), FollowRobot::worst(node.limits)));
@@ -127,8 +127,8 @@ TEST_F(FollowRobotTest, IsPosedOnceByPosesOfOneNumber) {
   FollowRobot posed = node(k_all, {&shown_, 1}), node = this->node(k_all, {&given_, 0});
   RobotProgress progress;
   const auto more = [&](int number, ShownDepth::Links links) {
-    return run(node, picture(number, links), progress) -
-           run(posed, picture(number, {&shown_, 1}), progress);
+    return run(node, depth_image(number, links), progress) -
+           run(posed, depth_image(number, {&shown_, 1}), progress);
   };
   EXPECT_EQ(more(1, {&shown_, 1}), posing_steps());
   EXPECT_EQ(more(2, {&shown_, 1}), 0);
@@ -140,17 +140,17 @@ TEST_F(FollowRobotTest, IsPosedOnceByPosesOfOneNumber) {
 TEST_F(FollowRobotTest, IsNotLookedForByPosesThatAreNotThereOrLackALink) {
   FollowRobot node = this->node(k_all, {&given_, 0});
   RobotProgress progress;
-  EXPECT_EQ(run(node, picture(1, {nullptr, 1}), progress), 0);
-  EXPECT_EQ(progress.unsure, 0);
+  EXPECT_EQ(run(node, depth_image(1, {nullptr, 1}), progress), 0);
+  EXPECT_EQ(progress.inconclusive, 0);
   LinkPoses one = shown_;
   one.count = 1;
-  EXPECT_LE(run(node, picture(2, {&one, 1}), progress), k_posed_item_steps_max);
-  EXPECT_EQ(progress.unsure, 1);
+  EXPECT_LE(run(node, depth_image(2, {&one, 1}), progress), k_posed_item_steps_max);
+  EXPECT_EQ(progress.inconclusive, 1);
   // One point has moved: the model no longer counts as posed.
-  EXPECT_EQ(run(node, picture(3, {nullptr, 0}), progress), 0);
-  EXPECT_GT(run(node, picture(4, {&shown_, 1}), progress), posing_steps());
+  EXPECT_EQ(run(node, depth_image(3, {nullptr, 0}), progress), 0);
+  EXPECT_GT(run(node, depth_image(4, {&shown_, 1}), progress), posing_steps());
   EXPECT_EQ(progress.followed, 1);
-  EXPECT_EQ(progress.unsure, 1);
+  EXPECT_EQ(progress.inconclusive, 1);
 }
 
 TEST_F(FollowRobotTest, IsNotReadyWithoutPosesOfAllItsLinks) {
@@ -166,7 +166,7 @@ TEST_F(FollowRobotTest, IsNotReadyWithoutPosesOfAllItsLinks) {
 TEST_F(FollowRobotTest, StatesWhenAndWhereItWasFollowed) {
   FollowRobot node = this->node(k_all, {&shown_, 1});
   RobotProgress progress;
-  run(node, picture(3, {&shown_, 1}), progress);
+  run(node, depth_image(3, {&shown_, 1}), progress);
   EXPECT_EQ(progress.last, FollowOutcome::followed);
   EXPECT_EQ(progress.time, Time{} + milliseconds(300));
   EXPECT_EQ(progress.frame.state, RegistrationState::accepted);
@@ -182,12 +182,12 @@ TEST_F(FollowRobotTest, CountsAJumpAndStaysWhereItWas) {
   node.T_world_robot.translation = k_truth.translation + Vector3(0.03, 0, 0);
   ASSERT_EQ(node.prepare(), Reason::none);
   RobotProgress progress;
-  run(node, picture(1, {&shown_, 1}), progress);
+  run(node, depth_image(1, {&shown_, 1}), progress);
   EXPECT_EQ(progress.last, FollowOutcome::jumped) << name_of(progress.last);
   EXPECT_EQ(progress.jumps, 1);
-  EXPECT_EQ(progress.followed + progress.unsure, 0);
-  EXPECT_NEAR(progress.shift_m, 0.03, 0.005);
-  EXPECT_LT(progress.turn_rad, 0.02);
+  EXPECT_EQ(progress.followed + progress.inconclusive, 0);
+  EXPECT_NEAR(progress.translation_m, 0.03, 0.005);
+  EXPECT_LT(progress.rotation_rad, 0.02);
   EXPECT_EQ(progress.time, Time{});
   EXPECT_EQ(progress.frame.state, RegistrationState::none);
 }
@@ -195,13 +195,13 @@ TEST_F(FollowRobotTest, CountsAJumpAndStaysWhereItWas) {
 TEST_F(FollowRobotTest, CountsAPictureThatShowsTooLittle) {
   FollowRobot node = this->node(k_all, {&shown_, 1});
   RobotProgress progress;
-  run(node, picture(1, {&shown_, 1}), progress);
+  run(node, depth_image(1, {&shown_, 1}), progress);
   ASSERT_EQ(progress.followed, 1);
   std::fill(depth_.begin(), depth_.end(), 0.4f);  // a hand in front of the lens
-  run(node, picture(2, {&shown_, 1}), progress);
+  run(node, depth_image(2, {&shown_, 1}), progress);
   EXPECT_NE(progress.last, FollowOutcome::followed);
   EXPECT_EQ(progress.followed, 1);
-  EXPECT_EQ(progress.unsure, 1);
+  EXPECT_EQ(progress.inconclusive, 1);
   EXPECT_EQ(progress.jumps, 0);
   EXPECT_EQ(progress.time, Time{} + milliseconds(100));
 }
@@ -209,30 +209,30 @@ TEST_F(FollowRobotTest, CountsAPictureThatShowsTooLittle) {
 TEST_F(FollowRobotTest, LooksAtEachPictureOnceAndAtNoneWithoutAModelOrSteps) {
   FollowRobot node = this->node(k_all, {&shown_, 1});
   RobotProgress progress;
-  EXPECT_GT(run(node, picture(1, {&shown_, 1}), progress), 0);
-  EXPECT_EQ(run(node, picture(1, {&shown_, 1}), progress), 0);
+  EXPECT_GT(run(node, depth_image(1, {&shown_, 1}), progress), 0);
+  EXPECT_EQ(run(node, depth_image(1, {&shown_, 1}), progress), 0);
   EXPECT_EQ(progress.followed, 1);
-  ShownDepth empty = picture(2, {&shown_, 1});
+  ShownDepth empty = depth_image(2, {&shown_, 1});
   empty.scene.depth_m = {};
   EXPECT_EQ(run(node, empty, progress), 0) << "no robot is looked for";
   FollowRobot none;
-  none.limits.reference_steps = k_all;
+  none.limits.tracking_steps = k_all;
   ASSERT_EQ(none.prepare(), Reason::none);
-  EXPECT_EQ(run(none, picture(1, {&shown_, 1}), progress), 0);
-  EXPECT_EQ(progress.followed + progress.unsure + progress.jumps, 0);
+  EXPECT_EQ(run(none, depth_image(1, {&shown_, 1}), progress), 0);
+  EXPECT_EQ(progress.followed + progress.inconclusive + progress.jumps, 0);
   EXPECT_EQ(none.counts(), (graph::LoopCounts{{1, 0}}));
   FollowRobot still = this->node(0, {&shown_, 1});
-  EXPECT_EQ(run(still, picture(1, {&shown_, 1}), progress), 0);
+  EXPECT_EQ(run(still, depth_image(1, {&shown_, 1}), progress), 0);
   EXPECT_EQ(progress.followed, 0);
   EXPECT_EQ(FollowRobot::worst(still.limits), (graph::LoopCounts{{1, 0}}));
-  still.limits.reference_steps = 7;
+  still.limits.tracking_steps = 7;
   EXPECT_EQ(FollowRobot::worst(still.limits),
             (graph::LoopCounts{{1, 7 + k_follow_item_steps_max}}));
 }
 
 TEST_F(FollowRobotTest, IsPosedWithoutTheHeap) {
   FollowRobot node = this->node(5'000, {&given_, 0});
-  const ShownDepth shown = picture(1, {&shown_, 1});
+  const ShownDepth shown = depth_image(1, {&shown_, 1});
   RobotProgress progress;
   const HeapCount heap;
   do {

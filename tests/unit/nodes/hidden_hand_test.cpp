@@ -21,10 +21,10 @@ constexpr double k_inside_999 = 22.46;  // chi-square quantile 0.999, 6 degrees 
 constexpr double k_focal_px = 250;
 
 // Counts over the poses with state `measured`.
-struct Standing {
-  int standing = 0, gross = 0, wrong_mask = 0;
-  void add(const Standing& other) {
-    standing += other.standing;
+struct MeasuredCounts {
+  int measured = 0, gross = 0, wrong_mask = 0;
+  void add(const MeasuredCounts& other) {
+    measured += other.measured;
     gross += other.gross;
     wrong_mask += other.wrong_mask;
   }
@@ -32,7 +32,8 @@ struct Standing {
 
 struct Figures {
   int hidden = 0, updated = 0, inside = 0, returns = 0, jumps = 0;
-  Standing by_few, by_more;  // poses from one or two markers, and from more
+  MeasuredCounts from_partial_visibility,
+      from_three_or_more;  // poses from one or two markers, and from more
   double squares_m2 = 0, nees = 0;
   void add(const Figures& other) {
     hidden += other.hidden;
@@ -40,8 +41,8 @@ struct Figures {
     inside += other.inside;
     returns += other.returns;
     jumps += other.jumps;
-    by_few.add(other.by_few);
-    by_more.add(other.by_more);
+    from_partial_visibility.add(other.from_partial_visibility);
+    from_three_or_more.add(other.from_three_or_more);
     squares_m2 += other.squares_m2;
     nees += other.nees;
   }
@@ -70,27 +71,27 @@ class Hand {
     tracker_->node<NameFew>().noise.focal_px = k_focal_px;
     for (double& phase : phases_) phase = random_.within(0, 6.28);
   }
-  void name_no_few() { tracker_->node<NameFew>().limits.blobs = 0; }
+  void disable_partial_visibility() { tracker_->node<NameFew>().limits.blobs = 0; }
 
   Figures run(int markers_left, int strays) {
     Figures figures;
     for (int frame = 0; frame < k_frames; ++frame) {
       const int in_cycle = frame % k_cycle;
       const bool hidden = frame > k_cycle && in_cycle >= k_hidden_from && in_cycle < k_hidden_until;
-      if (in_cycle == k_hidden_from) place_strays(frame, strays);
+      if (in_cycle == k_hidden_from) place_false_markers(frame, strays);
       const unsigned shown = hidden ? some_of(frame / k_cycle, markers_left) : 0x1F;
       const Track before = tracker_->output<Estimates>().tracks[0];
       activate(frame, shown, in_cycle >= k_hidden_from ? strays : 0);
       const Track& track = tracker_->output<Estimates>().tracks[0];
-      if (hidden) judge_hidden(frame, shown, track, figures);
-      if (frame > k_cycle && in_cycle == k_hidden_until) judge_return(frame, before, figures);
+      if (hidden) check_occluded(frame, shown, track, figures);
+      if (frame > k_cycle && in_cycle == k_hidden_until) check_reappearance(frame, before, figures);
     }
     return figures;
   }
 
  private:
   // Amplitude 50 mm and 17 degrees, up to 1.3 Hz.
-  [[nodiscard]] Pose truth(int frame) const {
+  [[nodiscard]] Pose ground_truth(int frame) const {
     const double t = 6.283185307179586 * time_of(frame).seconds();
     const auto wave = [&](double hertz, int phase) {
       return sine_cosine(hertz * t + phases_[static_cast<std::size_t>(phase)]).sine;
@@ -105,9 +106,9 @@ class Hand {
     const unsigned first = 1u << (cycle % 5);
     return count == 1 ? first : first | 1u << ((cycle + 1 + cycle / 5 % 4) % 5);
   }
-  void place_strays(int frame, int count) {
+  void place_false_markers(int frame, int count) {
     for (int s = 0; s < count; ++s)
-      strays_[static_cast<std::size_t>(s)] = truth(frame).translation + random_.in_box(0.16);
+      strays_[static_cast<std::size_t>(s)] = ground_truth(frame).translation + random_.in_box(0.16);
   }
   void see(const Vector3& centre) {
     const Vector3 ray = centre.normalized();
@@ -123,7 +124,8 @@ class Hand {
     tracker_->input<Markers>().count = 0;
     for (int s = 0; s < strays; ++s) see(strays_[static_cast<std::size_t>(s)]);
     for (int m = 0; m < tool_.marker_count; ++m) {
-      if ((shown >> m & 1u) != 0) see(truth(frame) * tool_.markers_m[static_cast<std::size_t>(m)]);
+      if ((shown >> m & 1u) != 0)
+        see(ground_truth(frame) * tool_.markers_m[static_cast<std::size_t>(m)]);
     }
     FrameStamp& stamp = tracker_->input<FrameStamp>();
     stamp.mid_exposure = Time{} + time_of(frame);
@@ -132,13 +134,13 @@ class Hand {
     tracker_->activate();
   }
   [[nodiscard]] Pose true_middle(int frame) const {
-    return {truth(frame).rotation, truth(frame) * tool_.middle_m()};
+    return {ground_truth(frame).rotation, ground_truth(frame) * tool_.middle_m()};
   }
   [[nodiscard]] double squared(const UncertainPose& stated, int frame) const {
     return Cholesky<6>(stated.covariance)
         .squared_length(pose_difference(true_middle(frame), stated.pose));
   }
-  void judge_hidden(int frame, unsigned shown, const Track& track, Figures& figures) const {
+  void check_occluded(int frame, unsigned shown, const Track& track, Figures& figures) const {
     ++figures.hidden;
     const Time now = Time{} + time_of(frame);
     const UncertainPose stated = predict_pose(track.motion, now, MotionSettings{}, track.noise);
@@ -149,16 +151,17 @@ class Hand {
     figures.inside += chi_square <= k_inside_999 ? 1 : 0;
     figures.updated += track.motion.time == now ? 1 : 0;
     if (track.newest.time != now) return;
-    Standing& poses = std::popcount(track.marker_mask) <= 2 ? figures.by_few : figures.by_more;
-    const double angle = stated.pose.rotation.angularDistance(truth(frame).rotation);
+    MeasuredCounts& poses = std::popcount(track.marker_mask) <= 2 ? figures.from_partial_visibility
+                                                                  : figures.from_three_or_more;
+    const double angle = stated.pose.rotation.angularDistance(ground_truth(frame).rotation);
     poses.add({1, off_m > 0.02 || angle > 0.26 ? 1 : 0, (track.marker_mask & ~shown) != 0 ? 1 : 0});
   }
   // Compares the prediction for the first frame after the occlusion with the ground truth.
-  void judge_return(int frame, const Track& before, Figures& figures) const {
+  void check_reappearance(int frame, const Track& before, Figures& figures) const {
     ++figures.returns;
-    const UncertainPose foretold =
+    const UncertainPose predicted =
         predict_pose(before.motion, Time{} + time_of(frame), MotionSettings{}, before.noise);
-    figures.jumps += squared(foretold, frame) > k_inside_999 ? 1 : 0;
+    figures.jumps += squared(predicted, frame) > k_inside_999 ? 1 : 0;
   }
 
   test::Random random_;
@@ -175,27 +178,27 @@ void print(const char* what, const Figures& f) {
       "%d returns beyond 99.9 %%\n",
       what, f.hidden, f.updated, 100 * f.inside_share(), f.nees / f.hidden, 1e3 * f.rms_m(),
       f.jumps, f.returns);
-  for (const Standing* poses : {&f.by_few, &f.by_more})
+  for (const MeasuredCounts* poses : {&f.from_partial_visibility, &f.from_three_or_more})
     std::printf("    %s: %d measured, %d gross, %d name a hidden marker\n",
-                poses == &f.by_few ? "by one or two" : "by more", poses->standing, poses->gross,
-                poses->wrong_mask);
+                poses == &f.from_partial_visibility ? "by one or two" : "by more", poses->measured,
+                poses->gross, poses->wrong_mask);
 }
 
 TEST(HiddenHand, TwoMarkersHoldTheToolCoveredByItsCovariance) {
   Figures held, coasted;
   held = Hand(1).run(2, 0);
   Hand alone(1);
-  alone.name_no_few();
+  alone.disable_partial_visibility();
   coasted = alone.run(2, 0);
   print("two markers", held);
   print("none named", coasted);
   EXPECT_EQ(coasted.updated, 0);
   EXPECT_GE(held.updated, held.hidden * 95 / 100);
-  EXPECT_GE(held.by_few.standing, held.hidden / 2) << "most are called measured";
+  EXPECT_GE(held.from_partial_visibility.measured, held.hidden / 2) << "most are called measured";
   EXPECT_GE(held.inside_share(), 0.99);
   EXPECT_LT(held.rms_m(), 0.3 * coasted.rms_m());
-  EXPECT_EQ(held.by_few.wrong_mask, 0);
-  EXPECT_EQ(held.by_few.gross, 0);
+  EXPECT_EQ(held.from_partial_visibility.wrong_mask, 0);
+  EXPECT_EQ(held.from_partial_visibility.gross, 0);
   EXPECT_EQ(held.jumps, 0) << "nothing jumps when the others return";
 }
 
@@ -205,7 +208,7 @@ TEST(HiddenHand, OneMarkerHoldsItsPlaceCoveredByItsCovariance) {
   EXPECT_GE(held.updated, held.hidden * 9 / 10);
   EXPECT_GE(held.inside_share(), 0.97);
   EXPECT_LT(held.nees / held.hidden, 1.4);
-  EXPECT_EQ(held.by_few.gross, 0);
+  EXPECT_EQ(held.from_partial_visibility.gross, 0);
   EXPECT_EQ(held.jumps, 0);
 }
 
@@ -217,16 +220,16 @@ TEST(HiddenHand, StraysNearbyAreHardlyEverTakenAndNeverMakeAGrossPose) {
     for (std::uint64_t seed = 10; seed < 14; ++seed) {
       held.add(Hand(seed).run(markers, 3));
       Hand alone(seed);
-      alone.name_no_few();
+      alone.disable_partial_visibility();
       coasted.add(alone.run(markers, 3));
     }
   }
   print("3 strays in 160 mm", held);
   print("none named", coasted);
-  EXPECT_GT(held.by_few.standing, held.hidden / 2);
-  EXPECT_EQ(held.by_few.gross, 0);
-  EXPECT_LE(held.by_few.wrong_mask, held.by_few.standing / 100);
-  EXPECT_LE(held.by_more.gross + coasted.by_more.gross, held.hidden / 500)
+  EXPECT_GT(held.from_partial_visibility.measured, held.hidden / 2);
+  EXPECT_EQ(held.from_partial_visibility.gross, 0);
+  EXPECT_LE(held.from_partial_visibility.wrong_mask, held.from_partial_visibility.measured / 100);
+  EXPECT_LE(held.from_three_or_more.gross + coasted.from_three_or_more.gross, held.hidden / 500)
       << "three that agree by chance are held to the motion";
   EXPECT_LT(held.nees / held.hidden, 2.5);
 }

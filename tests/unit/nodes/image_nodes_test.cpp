@@ -119,7 +119,7 @@ TEST_F(ImageNodes, BackProjectBlobsAndCountTheirPixelsAndSamples) {
   ASSERT_EQ(node.prepare(), Reason::none);
   auto markers = std::make_unique<Markers>(), expected = std::make_unique<Markers>();
   node(frame_, *blobs, *markers);
-  const BackProjectWork work = back_project(frame_, *blobs, node.camera, sphere_shift(node.camera),
+  const BackProjectWork work = back_project(frame_, *blobs, node.camera, sphere_offset(node.camera),
                                             node.depth, node.nominal, *expected, limits_);
   EXPECT_EQ(
       node.counts(),

@@ -75,7 +75,7 @@ TEST_F(LocateBoxes, AreTheWholeFrameForAToolThatMayBeAnywhere) {
   prediction.has_prior = false;
   expect_only(whole);
   prediction = seen;
-  prediction.missed_last = true;
+  prediction.undetected_last = true;
   expect_only(whole);
   prediction = seen;
   prediction.in_view = false;
@@ -166,8 +166,8 @@ TEST_F(LocateBoxes, AreDisjointAndHoldEveryTool) {
 
 // A partial frame, and one box fewer than tools: tracked tools come first.
 TEST_F(LocateBoxes, BesideAPartOfTheFrameAreThoseOfTrackedToolsFirst) {
-  predictions_->narrowed = true;
-  predictions_->turn = 4;
+  predictions_->search_part_of_frame = true;
+  predictions_->frame_number = 4;
   const auto holds = [&](double x, double y) {
     for (int i = 0; i < rois_.count; ++i) {
       const Roi& roi = rois_.items[static_cast<std::size_t>(i)];
@@ -181,7 +181,7 @@ TEST_F(LocateBoxes, BesideAPartOfTheFrameAreThoseOfTrackedToolsFirst) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
   // Positions in a row outside the searched part.
   const double y = part.y0 > 20 ? 5 : 70;
-  add({5, y}, {10, y + 5}).missed_last = true;
+  add({5, y}, {10, y + 5}).undetected_last = true;
   add({25, y}, {30, y + 5});
   add({45, y}, {50, y + 5}).has_prior = false;
   add({65, y}, {70, y + 5});
@@ -202,9 +202,9 @@ TEST_F(LocateBoxes, BesideAPartOfTheFrameAreThoseOfTrackedToolsFirst) {
 
 // Half or a quarter of the columns. The centre follows the multiples of the golden ratio.
 TEST_F(LocateBoxes, OfTheFrameArePartsThatTheGoldenRatioPlaces) {
-  predictions_->narrowed = true;
+  predictions_->search_part_of_frame = true;
   for (std::uint32_t turn = 1; turn <= 64; ++turn) {
-    predictions_->turn = turn;
+    predictions_->frame_number = turn;
     const Rois& rois = run();
     ASSERT_EQ(rois.count, 1);
     const Roi& part = rois.items[0];

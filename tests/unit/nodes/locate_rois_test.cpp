@@ -31,7 +31,7 @@ class LocateRois : public testing::Test {
   void track(int tool, const Vector3& position, bool seen = true) {
     Track& track = last_->tracks[static_cast<std::size_t>(tool)];
     track.alive = true;
-    track.seen_now = seen;
+    track.measured_now = seen;
     track.newest.time = Time{} + milliseconds(1000);
     track.newest.pose.translation = position;
     track.T_camera_tool = track.newest.pose;

@@ -28,7 +28,7 @@ class NameFewTest : public testing::Test {
     assignment_->reason.fill(Reason::no_labeling);
     assignment_->reason[1] = Reason::none;
     for (Labeling& labeling : assignment_->labeling) labeling.marker.fill(-1);
-    for (Labeling& labeling : assignment_->rival) labeling.marker.fill(-1);
+    for (Labeling& labeling : assignment_->alternative) labeling.marker.fill(-1);
     markers_->count = 3;
     show(0, Vector3(0, 0.3, 0.5));  // false marker
     show(1, place_of(0, 0));
@@ -42,7 +42,7 @@ class NameFewTest : public testing::Test {
     markers_->items[marker].surface_range_m = centre.norm() - set_->items[0].centre_offset_m();
   }
   // Number of the first tool's markers that the node assigns.
-  int named() {
+  int assigned_count() {
     tools_.set(*set_, ++version_, 0);
     node_->operator()(verdict_, *markers_, tools_, *predictions_, *assignment_, seen_);
     EXPECT_EQ(seen_.tools[1].count, 0) << "it has a labeling, or is not foretold";
@@ -61,8 +61,8 @@ class NameFewTest : public testing::Test {
 };
 
 TEST_F(NameFewTest, NamesTheMarkersOfAToolWithoutALabeling) {
-  ASSERT_EQ(named(), 2);
-  const FewMarkers& few = seen_.tools[0];
+  ASSERT_EQ(assigned_count(), 2);
+  const PartialMarkers& few = seen_.tools[0];
   EXPECT_EQ(few.items[0].of_tool, 0);
   EXPECT_EQ(few.items[1].of_tool, 2);
   EXPECT_LT((few.items[0].centre_m - place_of(0, 0)).norm(), 1e-12);
@@ -72,54 +72,54 @@ TEST_F(NameFewTest, NamesTheMarkersOfAToolWithoutALabeling) {
 }
 
 TEST_F(NameFewTest, LooksForNothingWhereEveryForetoldToolHasALabeling) {
-  ASSERT_EQ(named(), 2);
+  ASSERT_EQ(assigned_count(), 2);
   assignment_->reason[0] = Reason::none;
-  EXPECT_EQ(named(), 0) << "what the frame before named is gone";
+  EXPECT_EQ(assigned_count(), 0) << "what the frame before named is gone";
   EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1}}));
   assignment_->reason[0] = Reason::no_labeling;
   predictions_->tools[0].follows_motion = false;
-  EXPECT_EQ(named(), 0);
+  EXPECT_EQ(assigned_count(), 0);
   EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1}}));
 }
 
 TEST_F(NameFewTest, LooksForNothingInARefusedFrame) {
-  ASSERT_EQ(named(), 2);
+  ASSERT_EQ(assigned_count(), 2);
   verdict_.reason = Reason::frame_late;
-  EXPECT_EQ(named(), 0);
+  EXPECT_EQ(assigned_count(), 0);
   EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1}}));
 }
 
 TEST_F(NameFewTest, LooksForNoToolOfMoreMarkersThanTheCellHas) {
   node_->limits.markers_per_tool = 3;
-  EXPECT_EQ(named(), 2);
+  EXPECT_EQ(assigned_count(), 2);
   node_->limits.markers_per_tool = 2;
-  EXPECT_EQ(named(), 0);
+  EXPECT_EQ(assigned_count(), 0);
 }
 
 TEST_F(NameFewTest, LooksForNoMoreToolsThanTheCellHas) {
   node_->limits.tools = 1;
-  EXPECT_EQ(named(), 2);
+  EXPECT_EQ(assigned_count(), 2);
   EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1, 1, 3, (1 + 3) * 3}}));
 }
 
 TEST_F(NameFewTest, LooksAtNoMoreMarkersThanTheCellHas) {
   node_->limits.blobs = 2;
-  EXPECT_EQ(named(), 1) << "the third is not looked at";
+  EXPECT_EQ(assigned_count(), 1) << "the third is not looked at";
 }
 
 // Both the other tool's labeling and its alternative keep their markers: either may be chosen.
 TEST_F(NameFewTest, TakesNoMarkerThatAnotherToolsLabelingHolds) {
-  for (const bool rival : {false, true}) {
+  for (const bool use_alternative : {false, true}) {
     for (const int lowest : {1, 0}) {
-      Labeling& labeling = rival ? assignment_->rival[1] : assignment_->labeling[1];
+      Labeling& labeling = use_alternative ? assignment_->alternative[1] : assignment_->labeling[1];
       if (lowest == 0) show(0, place_of(0, 1));  // marker 0 of the frame is one of the tool's, too
       if (lowest == 0) show(1, Vector3(0, 0.3, 0.5));
       labeling.marker[4] = static_cast<std::int16_t>(lowest);
       labeling.count = 3;
-      EXPECT_EQ(named(), 1) << rival << lowest;
+      EXPECT_EQ(assigned_count(), 1) << use_alternative << lowest;
       EXPECT_EQ(seen_.tools[0].items[0].of_tool, 2);
       labeling.count = 0;
-      EXPECT_EQ(named(), 2) << "an old frame's";
+      EXPECT_EQ(assigned_count(), 2) << "an old frame's";
       labeling.marker[4] = -1;
       show(0, Vector3(0, 0.3, 0.5));
       show(1, place_of(0, 0));
@@ -130,17 +130,17 @@ TEST_F(NameFewTest, TakesNoMarkerThatAnotherToolsLabelingHolds) {
 TEST_F(NameFewTest, TakesMarkersOfALabelingThatDoesNotHold) {
   assignment_->labeling[0].marker[0] = 1;
   assignment_->labeling[0].count = 3;
-  EXPECT_EQ(named(), 2) << "its own, which was refused";
+  EXPECT_EQ(assigned_count(), 2) << "its own, which was refused";
 }
 
 // The gate accepts an offset marker only if the estimated noise is large enough.
 TEST_F(NameFewTest, OpensItsGatesByTheNoiseThatWasSeen) {
   show(1, place_of(0, 0) + Vector3(0, 0, 0.02));
-  EXPECT_EQ(named(), 1);
-  predictions_->noise.known = true;
+  EXPECT_EQ(assigned_count(), 1);
+  predictions_->noise.has_residuals = true;
   predictions_->noise.range_sigma_m = 0.008;
   predictions_->noise.pixel_sigma_px = 0.1;
-  EXPECT_EQ(named(), 2);
+  EXPECT_EQ(assigned_count(), 2);
 }
 
 }  // namespace

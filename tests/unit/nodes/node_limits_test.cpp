@@ -79,8 +79,10 @@ TEST(WorstCounts, OfTheOtherNodesAreProductsOfTheLimits) {
   EXPECT_EQ(glint::AssignMarkers::worst(k_small), (LoopCounts{{1, 5, 5, assign_tests_worst(5)}}));
   EXPECT_EQ(glint::NameFew::worst(k_small), (LoopCounts{{1, 5, 15, (15 + 5) * 65}}));
   EXPECT_EQ(glint::AnchorHead::worst(k_small), (LoopCounts{{1, 1}}));
-  EXPECT_EQ(glint::FollowMotion::worst(k_small), (LoopCounts{{1, 2, 2, 2 * k_rest_levels}}));
-  EXPECT_EQ(glint::FollowMotion::worst(k_small, {1, 4}), (LoopCounts{{1, 1, 1, k_rest_levels}}));
+  EXPECT_EQ(glint::FollowMotion::worst(k_small),
+            (LoopCounts{{1, 2, 2, 2 * k_static_window_levels}}));
+  EXPECT_EQ(glint::FollowMotion::worst(k_small, {1, 4}),
+            (LoopCounts{{1, 1, 1, k_static_window_levels}}));
   EXPECT_EQ(glint::TrackTools::worst(k_small), (LoopCounts{{1, 5, 5}}));
   EXPECT_EQ(glint::PredictTools::worst(k_small), (LoopCounts{{1, 5, 5}}));
   EXPECT_EQ(glint::PackCan::worst(k_small), (LoopCounts{{1, 5, 5, 3}}));
@@ -114,8 +116,8 @@ class OfATool : public testing::Test {
     tool_.tip_sigma_m = 0.002;
     found_.T_camera_tool = {random_.rotation(), Vector3(0.1, 0.2, 0.6)};
     found_.covariance = test::random_covariance<6>(random_, 0.002);
-    found_.near_T_camera_tool = {random_.rotation(), Vector3(0.3, 0.1, 0.5)};
-    found_.near_covariance = test::random_covariance<6>(random_, 0.003);
+    found_.relinearised_T_camera_tool = {random_.rotation(), Vector3(0.3, 0.1, 0.5)};
+    found_.relinearised_covariance = test::random_covariance<6>(random_, 0.003);
   }
   test::Random random_{7};
   Tool tool_;
@@ -124,7 +126,7 @@ class OfATool : public testing::Test {
 
 TEST_F(OfATool, TheMiddleIsAPoseWithTheTipsCovarianceMovedThere) {
   const Vector3 middle(0.02, 0.02, 0.2);
-  const UncertainPose seen = middle_of(found_, tool_, Time{5});
+  const UncertainPose seen = centroid_pose_of(found_, tool_, Time{5});
   EXPECT_EQ(seen.time, Time{5});
   EXPECT_LT((seen.pose.translation - found_.T_camera_tool * middle).norm(), 1e-15);
   EXPECT_EQ(seen.pose.rotation.coeffs(), found_.T_camera_tool.rotation.coeffs());
@@ -134,20 +136,21 @@ TEST_F(OfATool, TheMiddleIsAPoseWithTheTipsCovarianceMovedThere) {
 }
 
 TEST_F(OfATool, AFilterReceivesTheMiddleOrWhatFewMarkersShowOfIt) {
-  const UncertainPose plain = told_middle_of(found_, tool_, Time{5});
-  const UncertainPose middle = middle_of(found_, tool_, Time{5});
+  const UncertainPose plain = filter_measurement_of(found_, tool_, Time{5});
+  const UncertainPose middle = centroid_pose_of(found_, tool_, Time{5});
   EXPECT_EQ(plain.pose.translation, middle.pose.translation);
   EXPECT_EQ(plain.covariance, middle.covariance);
-  found_.tells_near = true;
-  const UncertainPose near = told_middle_of(found_, tool_, Time{6});
+  found_.has_relinearised = true;
+  const UncertainPose near = filter_measurement_of(found_, tool_, Time{6});
   EXPECT_EQ(near.time, Time{6});
-  EXPECT_LT((near.pose.translation - found_.near_T_camera_tool * tool_.middle_m()).norm(), 1e-15);
-  EXPECT_EQ(near.pose.rotation.coeffs(), found_.near_T_camera_tool.rotation.coeffs());
-  EXPECT_EQ(near.covariance, found_.near_covariance);
+  EXPECT_LT((near.pose.translation - found_.relinearised_T_camera_tool * tool_.middle_m()).norm(),
+            1e-15);
+  EXPECT_EQ(near.pose.rotation.coeffs(), found_.relinearised_T_camera_tool.rotation.coeffs());
+  EXPECT_EQ(near.covariance, found_.relinearised_covariance);
 }
 
 TEST_F(OfATool, TheTipIsAnArmFromTheMiddleWithAnErrorOfItsOwn) {
-  const TipPlace tip = tip_of(tool_);
+  const TipPosition tip = tip_of(tool_);
   EXPECT_LT((tip.arm_m - Vector3(-0.01, -0.04, -0.3)).norm(), 1e-15);
   EXPECT_EQ(tip.sigma_m, 0.002);
   const Matrix6 of_middle = test::random_covariance<6>(random_, 0.002);
@@ -174,20 +177,20 @@ TEST_F(OfATool, APredictedMarkersPlaceMovesWithShiftAndTurn) {
                    (2 * k_step);
   }
   const Matrix3 expected = j * prediction.covariance * j.transpose();
-  EXPECT_LT((prediction.place_covariance(from_middle) - expected).norm(), 1e-10);
+  EXPECT_LT((prediction.marker_position_covariance(from_middle) - expected).norm(), 1e-10);
 }
 
 TEST_F(OfATool, ALabelingIsTheRivalsWhereThePoseIs) {
   Assignment assignment;
   EXPECT_EQ(&labeling_of(assignment, found_, 3), &assignment.labeling[3]);
-  found_.by_rival = true;
-  EXPECT_EQ(&labeling_of(assignment, found_, 3), &assignment.rival[3]);
+  found_.by_alternative = true;
+  EXPECT_EQ(&labeling_of(assignment, found_, 3), &assignment.alternative[3]);
 }
 
 TEST_F(OfATool, OddsBelowTheLeastAreAmbiguous) {
-  found_.odds = k_odds_least;
+  found_.odds = k_odds_min;
   EXPECT_FALSE(found_.ambiguous());
-  found_.odds = std::nextafter(k_odds_least, 0);
+  found_.odds = std::nextafter(k_odds_min, 0);
   EXPECT_TRUE(found_.ambiguous());
 }
 

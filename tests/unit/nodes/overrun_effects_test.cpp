@@ -20,7 +20,7 @@ std::unique_ptr<Estimates> moving() {
   estimates->tool_count = 2;
   Track& track = estimates->tracks[0];
   track.alive = true;
-  track.seen_now = true;
+  track.measured_now = true;
   track.has_previous = true;
   track.reason = Reason::none;
   track.base = ReferenceFrame::world;
@@ -75,7 +75,7 @@ TEST(FrameOverrun, MovesAPredictedToolOnAtItsLastVelocity) {
   auto out = std::make_unique<Estimates>();
   ASSERT_TRUE(substitute(OverrunPolicy::predict, frame_at(1020), *moving(), *out));
   EXPECT_NEAR(out->tracks[0].T_camera_tool.translation.x(), 0.020, 1e-12);
-  EXPECT_FALSE(out->tracks[0].seen_now);
+  EXPECT_FALSE(out->tracks[0].measured_now);
   const PoseSample sample = sample_of(*out, 1024);
   EXPECT_EQ(sample.state, TrackState::predicted);
   EXPECT_EQ(sample.reason, Reason::overrun_predicted);
@@ -149,7 +149,7 @@ TEST(FrameOverrun, StopsEveryMotionOfAHeldTool) {
   EXPECT_TRUE(track.motion.angular_velocity_rad_s.isZero());
   EXPECT_TRUE(track.motion.angular_acceleration_rad_s2.isZero());
   EXPECT_EQ(track.motion.pose.translation, Vector3(1, 2, 3));
-  EXPECT_FALSE(track.has_previous || track.seen_now);
+  EXPECT_FALSE(track.has_previous || track.measured_now);
   EXPECT_TRUE(track.alive);
 }
 
@@ -177,7 +177,7 @@ TEST(ReasonOfPolicy, IsItsOwn) {
 }
 
 // Output of the tick at 1000 ms: a measurement 10 ms old, moving at 2 m/s along y, draw held.
-std::unique_ptr<PoseSamples> left(int tool = 0) {
+std::unique_ptr<PoseSamples> previous_output(int tool = 0) {
   auto samples = std::make_unique<PoseSamples>();
   samples->count = 1;
   PoseSample& sample = samples->items[0];
@@ -200,14 +200,15 @@ PoseSample after(OverrunPolicy policy, std::int64_t tick_ms, PenButtons buttons 
                  int tool = 0) {
   auto out = std::make_unique<PoseSamples>();
   const Now now{Time{} + milliseconds(tick_ms), static_cast<std::uint32_t>(tick_ms / 4), 0};
-  EXPECT_TRUE(substitute(policy, {now, k_lost_after, buttons}, *left(tool), *out));
+  EXPECT_TRUE(substitute(policy, {now, k_lost_after, buttons}, *previous_output(tool), *out));
   EXPECT_EQ(out->count, 1);
   return out->items[0];
 }
 
 TEST(TickOverrun, LetsNothingLeaveWhenItSkips) {
   PoseSamples out;
-  EXPECT_FALSE(substitute(OverrunPolicy::skip_output, {Now{}, k_lost_after, {}}, *left(), out));
+  EXPECT_FALSE(
+      substitute(OverrunPolicy::skip_output, {Now{}, k_lost_after, {}}, *previous_output(), out));
 }
 
 TEST(TickOverrun, SendsTheLastSamplesAgainOlder) {
@@ -235,7 +236,7 @@ TEST(TickOverrun, DeclaresTheToolLostWhenItStops) {
 
 TEST(TickOverrun, LeavesALostSampleWhoseItIsAndNoPose) {
   const PoseSample lost = after(OverrunPolicy::stop_safe, 1008, {}, 2);
-  const PoseSample was = left(2)->items[0];
+  const PoseSample was = previous_output(2)->items[0];
   EXPECT_EQ(lost.tick, Time{} + milliseconds(1008));
   EXPECT_EQ(lost.tick_number, 252u);
   EXPECT_EQ(lost.tool, 2);
@@ -249,7 +250,7 @@ TEST(TickOverrun, LeavesALostSampleWhoseItIsAndNoPose) {
 
 // Position first, then the rotation about the tip, over the time since the last tick.
 TEST(TickOverrun, MovesEachSampleOnAndSaysOfWhichFrameTheyAre) {
-  auto in_time = left();
+  auto in_time = previous_output();
   in_time->any_frame = true;
   in_time->newest_frame = Time{} + milliseconds(995);
   in_time->count = 2;
@@ -277,7 +278,7 @@ TEST(TickOverrun, MovesEachSampleOnAndSaysOfWhichFrameTheyAre) {
 }
 
 TEST(TickOverrun, LeavesWhyASampleHadNoPose) {
-  auto in_time = left();
+  auto in_time = previous_output();
   in_time->items[0].state = TrackState::none;
   in_time->items[0].reason = Reason::no_frame_yet;
   auto out = std::make_unique<PoseSamples>();
@@ -308,7 +309,7 @@ TEST(TickOverrun, SaysTheButtonsThatAreHeldByThen) {
 }
 
 TEST(TickOverrun, SaysNoButtonsOfAnyToolButTheFirst) {
-  const auto in_time = left();
+  const auto in_time = previous_output();
   in_time->items[0].tool = 1;
   auto out = std::make_unique<PoseSamples>();
   const OverrunTick tick{{in_time->items[0].tick, 250, 0}, k_lost_after, {7}};

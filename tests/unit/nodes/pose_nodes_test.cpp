@@ -39,7 +39,7 @@ class Correspond : public testing::Test {
   // Largest relative scale error of the markers that is still accepted, by bisection. The noise is
   // given in multiples of the declared noise.
   double largest_scale(double range_noises, double pixel_noises) {
-    predictions_->noise.known = true;
+    predictions_->noise.has_residuals = true;
     predictions_->noise.range_sigma_m = range_noises * node_->settings.range_sigma_m;
     predictions_->noise.pixel_sigma_px = pixel_noises * node_->settings.pixel_sigma_px;
     double fits = 1, fails = 1.5;
@@ -63,7 +63,7 @@ TEST_F(Correspond, NamesTheBudgetWhereItLeftOutSpotsOfAToolThatWasNotFound) {
   EXPECT_EQ(reason(Reason::none), Reason::too_few_markers);
   EXPECT_EQ(reason(Reason::blobs_full), Reason::blobs_full);
   EXPECT_EQ(reason(Reason::runs_full), Reason::runs_full);
-  predictions_->narrowed = true;
+  predictions_->search_part_of_frame = true;
   EXPECT_EQ(reason(Reason::none), Reason::runs_full) << "a part of the frame was searched";
 }
 
@@ -78,7 +78,7 @@ TEST_F(Correspond, BlamesABlobBudgetForNoToolThatWasPredicted) {
 TEST_F(Correspond, OpensItsGatesWithTheNoiseThatWasSeenAndNeverClosesThem) {
   show_scaled_by(1.2);
   EXPECT_NE(reason(Reason::none), Reason::none);
-  predictions_->noise.known = true;
+  predictions_->noise.has_residuals = true;
   predictions_->noise.range_sigma_m = 0.01;
   predictions_->noise.pixel_sigma_px = 0.1;
   EXPECT_EQ(reason(Reason::none), Reason::none);
@@ -144,9 +144,9 @@ TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
   set->count = 2;
   graph::Latest<ToolSet> tools;
   tools.set(*set, 1, 0);
-  auto labelings = std::make_unique<graph::Parts<ToolLabelings, k_tool_slices>>();
+  auto labelings = std::make_unique<graph::Parts<ToolLabelings, k_tool_partitions>>();
   for (std::int16_t t = 0; t < 2; ++t) {
-    Labelings& own = (*labelings)[t % k_tool_slices].tools[static_cast<std::size_t>(t)];
+    Labelings& own = (*labelings)[t % k_tool_partitions].tools[static_cast<std::size_t>(t)];
     const auto first = static_cast<std::int16_t>(3 * t);
     own.items[0] = labeling(first, static_cast<std::int16_t>(first + 1),
                             static_cast<std::int16_t>(first + 2), 0);
@@ -157,9 +157,9 @@ TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
   auto assignment = std::make_unique<Assignment>();
   (*node)(FrameVerdict{}, tools, *labelings, *assignment);
   EXPECT_EQ(assignment->labeling[1].marker[0], 3);
-  EXPECT_EQ(assignment->rival[0].count, 3);
-  EXPECT_EQ(assignment->rival[0].marker[2], 6);
-  EXPECT_EQ(assignment->rival[1].count, 0);
+  EXPECT_EQ(assignment->alternative[0].count, 3);
+  EXPECT_EQ(assignment->alternative[0].marker[2], 6);
+  EXPECT_EQ(assignment->alternative[1].count, 0);
 }
 
 }  // namespace

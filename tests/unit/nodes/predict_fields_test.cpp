@@ -17,7 +17,7 @@ class PredictFields : public testing::Test {
     estimates_->verdict.stamp.arrival = Time{} + milliseconds(1003);
     for (std::size_t t = 0; t < 3; ++t) {
       Track& track = estimates_->tracks[t];
-      track.alive = track.seen_now = true;
+      track.alive = track.measured_now = true;
       track.reason = Reason::none;
       track.base = ReferenceFrame::world;
       track.newest.time = track.motion.time = Time{} + milliseconds(1000);
@@ -173,8 +173,8 @@ TEST_F(PredictFields, TurnTheCovariancesIntoTheRobotsFrame) {
   EXPECT_LT((robot.pose.translation - expected.translation).norm(), 1e-12);
   EXPECT_LT((robot.velocity_m_s - turn * world.velocity_m_s).norm(), 1e-12);
   EXPECT_LT((robot.angular_velocity_rad_s - turn * world.angular_velocity_rad_s).norm(), 1e-12);
-  EXPECT_LT((robot.covariance - turned_covariance(world.covariance, turn)).norm(), 1e-15);
-  EXPECT_LT((robot.systematic - turned_covariance(world.systematic, turn)).norm(), 1e-15);
+  EXPECT_LT((robot.covariance - rotated_covariance(world.covariance, turn)).norm(), 1e-15);
+  EXPECT_LT((robot.systematic - rotated_covariance(world.systematic, turn)).norm(), 1e-15);
   EXPECT_NEAR(robot.sigma_position_m, world.sigma_position_m, 1e-12);
 }
 

@@ -18,7 +18,7 @@ class PredictTools : public testing::Test {
     estimates_->tips[0].arm_m = Vector3(0.1, 0, 0);
     Track& track = estimates_->tracks[0];
     track.alive = true;
-    track.seen_now = true;
+    track.measured_now = true;
     track.reason = Reason::none;
     track.base = ReferenceFrame::world;
     track.newest = {Time{} + milliseconds(1000), {}};
@@ -66,7 +66,7 @@ TEST_F(PredictTools, IsPredictedUpToLostAfterAndThenLostWithoutAPose) {
 }
 
 TEST_F(PredictTools, IsLostWhereThePoseWasNeverToldFromAnother) {
-  estimates_->tracks[0].doubted = true;
+  estimates_->tracks[0].unconfirmed = true;
   estimates_->tracks[0].reason = Reason::ambiguous;
   EXPECT_EQ(at(1010).state, TrackState::lost);
   EXPECT_EQ(at(1010).reason, Reason::ambiguous);
@@ -253,7 +253,7 @@ TEST_F(PredictTools, TakesTheRobotsFrameFromTheReferenceToolWhereTheCellSaysSo) 
   robot_.T_world_robot.translation = Vector3(0, 0, 1);
   EXPECT_EQ(at(1000).frame, ReferenceFrame::world) << "the reference is yet to be seen";
   EXPECT_EQ(at(1000).reason, Reason::no_reference);
-  estimates_->reference_known = true;
+  estimates_->has_reference = true;
   estimates_->T_world_reference.translation = Vector3(0, 2, 0);
   const PoseSample sample = at(1000);
   EXPECT_EQ(sample.frame, ReferenceFrame::robot);

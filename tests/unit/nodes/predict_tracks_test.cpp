@@ -21,7 +21,7 @@ class PredictTracks : public testing::Test {
     tool().markers_m = {Vector3(-0.05, 0, 0), Vector3(0.05, 0, 0), Vector3(0, 0.06, 0)};
     tool().marker_radius_m = 0.005;
     EXPECT_EQ(prepare_tool(tool()), Reason::none);
-    track().alive = track().seen_now = true;
+    track().alive = track().measured_now = true;
     track().identity = tool().identity;
     track().newest.time = track().motion.time = Time{} + milliseconds(1000);
     place({Quaternion::Identity(), Vector3(0, 0, 0.5)});
@@ -32,7 +32,7 @@ class PredictTracks : public testing::Test {
     track().newest.pose = track().T_camera_tool = T_base_tool;
     track().motion.pose = {T_base_tool.rotation, T_base_tool * tool().middle_m()};
   }
-  void sure_within(double position_m, double rotation_rad) {
+  void set_standard_deviations(double position_m, double rotation_rad) {
     MotionCovariance& p = track().motion.covariance;
     p.setZero();
     p.diagonal().segment<3>(k_position).setConstant(position_m * position_m);
@@ -62,25 +62,25 @@ class PredictTracks : public testing::Test {
 
 TEST_F(PredictTracks, HasTheWholeFrameSearchedUnlessEachToolWasSeen) {
   predict();
-  EXPECT_FALSE(predictions_->everywhere);
-  track().seen_now = false;
+  EXPECT_FALSE(predictions_->search_whole_frame);
+  track().measured_now = false;
   predict();
-  EXPECT_TRUE(predictions_->everywhere) << "missed in the last frame";
-  track().seen_now = true;
+  EXPECT_TRUE(predictions_->search_whole_frame) << "missed in the last frame";
+  track().measured_now = true;
   tools_->count = 2;
   predict();
-  EXPECT_FALSE(predictions_->everywhere) << "the second place is empty";
+  EXPECT_FALSE(predictions_->search_whole_frame) << "the second place is empty";
   tools_->items[1] = tool();
   tools_->items[1].identity = tool().identity + 1;
   predict();
-  EXPECT_TRUE(predictions_->everywhere) << "the second tool was never found";
-  EXPECT_FALSE(predictions_->narrowed);
+  EXPECT_TRUE(predictions_->search_whole_frame) << "the second tool was never found";
+  EXPECT_FALSE(predictions_->search_part_of_frame);
   last_->tracks[1].reason = Reason::runs_full;
   predict();
-  EXPECT_TRUE(predictions_->narrowed);
+  EXPECT_TRUE(predictions_->search_part_of_frame);
   verdict_accepted_ = 32;
   predict();
-  EXPECT_FALSE(predictions_->narrowed) << "now and then the whole frame";
+  EXPECT_FALSE(predictions_->search_part_of_frame) << "now and then the whole frame";
 }
 
 TEST_F(PredictTracks, HandsOnTheOddsOfTheMotion) {
@@ -145,7 +145,7 @@ TEST_F(PredictTracks, IsNotInViewWithAMarkerThatHasNoPixel) {
   EXPECT_FALSE(found.in_view);
   EXPECT_EQ(predictions_->marker_count, 2);
   EXPECT_LT(found.low_px.x(), 231);
-  EXPECT_TRUE(predictions_->everywhere) << "part of it may be anywhere";
+  EXPECT_TRUE(predictions_->search_whole_frame) << "part of it may be anywhere";
 }
 
 TEST_F(PredictTracks, ListsTheMarkersOfAllItsToolsAndNoMoreThanTheCellHas) {
@@ -166,14 +166,14 @@ TEST_F(PredictTracks, ListsTheMarkersOfAllItsToolsAndNoMoreThanTheCellHas) {
 }
 
 TEST_F(PredictTracks, HandsOnTheFramesTurnAndTheNoiseThatWasSeen) {
-  last_->noise.known = true;
+  last_->noise.has_residuals = true;
   last_->noise.range_sigma_m = 0.0021;
   last_->noise.pixel_sigma_px = 0.37;
-  track().seen_now = false;
+  track().measured_now = false;
   verdict_accepted_ = 123;
-  EXPECT_TRUE(predict().missed_last);
-  EXPECT_EQ(predictions_->turn, 123U);
-  EXPECT_TRUE(predictions_->noise.known);
+  EXPECT_TRUE(predict().undetected_last);
+  EXPECT_EQ(predictions_->frame_number, 123U);
+  EXPECT_TRUE(predictions_->noise.has_residuals);
   EXPECT_EQ(predictions_->noise.range_sigma_m, 0.0021);
   EXPECT_EQ(predictions_->noise.pixel_sigma_px, 0.37);
 }
@@ -181,11 +181,11 @@ TEST_F(PredictTracks, HandsOnTheFramesTurnAndTheNoiseThatWasSeen) {
 TEST_F(PredictTracks, NarrowsTheSearchOnlyForAToolThatIsPresent) {
   last_->tracks[0].reason = Reason::runs_full;
   (void)predict();
-  EXPECT_TRUE(predictions_->narrowed);
+  EXPECT_TRUE(predictions_->search_part_of_frame);
   tool().marker_count = 0;
   (void)predict();
-  EXPECT_FALSE(predictions_->narrowed);
-  EXPECT_FALSE(predictions_->everywhere) << "there is none to be looked for";
+  EXPECT_FALSE(predictions_->search_part_of_frame);
+  EXPECT_FALSE(predictions_->search_whole_frame) << "there is none to be looked for";
 }
 
 TEST_F(PredictTracks, PredictsNothingFromBeforeTheClockRestarted) {
@@ -197,45 +197,45 @@ TEST_F(PredictTracks, PredictsNothingFromBeforeTheClockRestarted) {
 
 TEST_F(PredictTracks, ReachesAsFarAsTheCovarianceSaysBetweenAFloorAndACeiling) {
   const double start = 0.5 * 30 * 0.022 * 0.022;
-  sure_within(1e-5, 1e-4);
+  set_standard_deviations(1e-5, 1e-4);
   EXPECT_NEAR(predict().reach_m, 0.0045 + start, 1e-4) << "a hand at rest may set off";
-  sure_within(0.0025, 1e-4);
+  set_standard_deviations(0.0025, 1e-4);
   EXPECT_NEAR(predict().reach_m, 8 * 0.0025, 5e-4);
-  sure_within(1e-5, 0.05);
+  set_standard_deviations(1e-5, 0.05);
   // The marker furthest from the mean has the largest standard deviation. The bound is at most a
   // fifth too large.
   const double furthest = 8 * 0.05 * (tool().markers_m[0] - tool().middle_m()).norm();
   EXPECT_GE(predict().reach_m, furthest);
   EXPECT_LE(predict().reach_m, 1.2 * furthest);
-  sure_within(1, 1);
+  set_standard_deviations(1, 1);
   EXPECT_NEAR(predict().reach_m, 0.015 + 0.022 + start, 1e-9);
 }
 
 TEST_F(PredictTracks, ReachesFurtherWhereTheLastMeasurementWasASurprise) {
-  sure_within(0.002, 1e-4);
+  set_standard_deviations(0.002, 1e-4);
   const double before = predict().reach_m;
-  track().surprise = 4;
+  track().nis_ratio = 4;
   EXPECT_NEAR(predict().reach_m, 2 * before, 1e-3);
 }
 
 TEST_F(PredictTracks, LooksNowhereElseOnlyForAToolWhoseSpeedItKnows) {
-  sure_within(0.001, 1e-3);
+  set_standard_deviations(0.001, 1e-3);
   const auto fast_within = [&](double x, double y, double z) {
     track().motion.covariance.diagonal().segment<3>(k_velocity) = Vector3(x, y, z).cwiseAbs2();
   };
   fast_within(0.1, 0.1, 0.1);
-  EXPECT_TRUE(predict().only_near);
+  EXPECT_TRUE(predict().within_reach_only);
   for (int axis = 0; axis < 3; ++axis) {
-    Vector3 unsure = Vector3::Constant(0.1);
-    unsure[axis] = 0.5;  // found once: its standard deviation is that of a hand's speed
-    fast_within(unsure.x(), unsure.y(), unsure.z());
-    EXPECT_FALSE(predict().only_near) << axis;
+    Vector3 velocity_sigma = Vector3::Constant(0.1);
+    velocity_sigma[axis] = 0.5;  // found once: its standard deviation is that of a hand's speed
+    fast_within(velocity_sigma.x(), velocity_sigma.y(), velocity_sigma.z());
+    EXPECT_FALSE(predict().within_reach_only) << axis;
     EXPECT_TRUE(predict().follows_motion);
   }
 }
 
 TEST_F(PredictTracks, HoldsTheToolBeyondTheHorizonAndReachesWhereItMayBe) {
-  sure_within(1e-4, 1e-3);
+  set_standard_deviations(1e-4, 1e-3);
   track().motion.velocity_m_s = {0.5, 0, 0};
   const Prediction& found = predict(100);
   EXPECT_NEAR((found.T_camera_tool * tool().middle_m()).x(), 0, 1e-9);
@@ -247,7 +247,7 @@ TEST_F(PredictTracks, TurnsTheCovarianceIntoTheCamera) {
   head_.T_world_camera.rotation = from_rotation_vector(Vector3(0, 0, k_half_pi));
   track().base = ReferenceFrame::world;
   place(head_.T_world_camera * track().T_camera_tool);
-  sure_within(1e-4, 1e-4);
+  set_standard_deviations(1e-4, 1e-4);
   track().motion.covariance(0, 0) = 1e-4;  // along the world's x, which is the camera's -y
   const Prediction& found = predict(1);
   ASSERT_TRUE(found.follows_motion);
@@ -259,14 +259,14 @@ TEST_F(PredictTracks, TurnsTheCovarianceIntoTheCamera) {
 TEST_F(PredictTracks, CountsWhatTheHeadsetsErrorMayHaveChangedBySince) {
   head_.valid = true;
   track().base = ReferenceFrame::world;
-  sure_within(1e-4, 1e-4);
+  set_standard_deviations(1e-4, 1e-4);
   const double alone = predict(22).covariance(0, 0);
   HeadNoise noise;
   noise.rest_position_m = 0.01;
   noise.rest_angle_rad = 0;
   // A correction by a reference body just before does not change the predicted growth.
   const UncertainPose body{head_.time, {}, Matrix6::Identity() * 1e-8};
-  for (int sight = 0; sight <= k_anchor_frames; ++sight) {
+  for (int sight = 0; sight <= k_body_definition_frames; ++sight) {
     head_.time = Time{} + milliseconds(1 + sight);
     (void)anchor_.state.update(head_, &body, noise);
   }
@@ -278,7 +278,7 @@ TEST_F(PredictTracks, CountsWhatTheHeadsetsErrorMayHaveChangedBySince) {
 TEST_F(PredictTracks, ReachesAsFarAsTheHeadsetMayErr) {
   head_.valid = true;
   track().base = ReferenceFrame::world;
-  sure_within(1e-5, 1e-4);
+  set_standard_deviations(1e-5, 1e-4);
   const double hand = predict().reach_m;
   HeadNoise noise;
   noise.rest_position_m = 0.1;

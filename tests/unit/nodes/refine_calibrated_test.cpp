@@ -24,12 +24,12 @@ TEST_F(RefineCalibrated, TakesEachToolsOwnDepthBiasInPlaceOfTheCameras) {
   for (int i = 0; i < 5; ++i) {
     Marker& marker = marker_of(1, i);
     marker.peak = static_cast<std::uint16_t>(500 + 400 * i);
-    marker.bias_taken_m = static_cast<float>(k_camera_bias_m);
+    marker.bias_subtracted_m = static_cast<float>(k_camera_bias_m);
     const double surface = marker.surface_range_m;
     double raw = surface;
     for (int again = 0; again < 20; ++again) raw = surface + discs.depth_bias.at(raw, marker.peak);
-    marker.surface_range_m = raw - static_cast<double>(marker.bias_taken_m);
-    marker_of(0, i).bias_taken_m = marker.bias_taken_m;
+    marker.surface_range_m = raw - static_cast<double>(marker.bias_subtracted_m);
+    marker_of(0, i).bias_subtracted_m = marker.bias_subtracted_m;
   }
   const FittedTools& fitted = run();
   for (int t = 0; t < 2; ++t) {

@@ -8,9 +8,9 @@ namespace glint {
 namespace {
 
 using test::error_of;
-using test::foretell;
 using test::k_place;
 using test::Random;
+using test::set_prediction;
 
 class RefineFew : public test::RefinePoseTest {};
 
@@ -21,15 +21,15 @@ TEST_F(RefineFew, BelievesThreeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) {
   const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
   add_tool(0, tool, truth, 1, random);
   Prediction& prediction = world_->predictions.tools[0];
-  foretell(tool, aside, prediction);
+  set_prediction(tool, aside, prediction);
   EXPECT_EQ(run_one().reason, Reason::none) << "five that agree are no chance";
-  forget(0, 4);
-  forget(0, 3);
+  drop_marker(0, 4);
+  drop_marker(0, 3);
   EXPECT_EQ(run_one().reason, Reason::bad_fit);
   EXPECT_TRUE(run_one().covariance.isZero());
-  foretell(tool, truth, prediction);
+  set_prediction(tool, truth, prediction);
   EXPECT_EQ(run_one().reason, Reason::none);
-  foretell(tool, aside, prediction);
+  set_prediction(tool, aside, prediction);
   prediction.covariance *= 100;  // after a long occlusion
   EXPECT_EQ(run_one().reason, Reason::none);
   prediction = {};  // unknown motion
@@ -49,7 +49,7 @@ TEST_F(RefineFew, IsLessSureOfAMarkerWhoseBlobIsLargerThanTheOthers) {
   tool.marker_radius_m = 0.0055;
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 0, random);
-  forget(0, 4);  // with five the fit would remove the bad marker
+  drop_marker(0, 4);  // with five the fit would remove the bad marker
   Marker& merged = marker_of(0, 1);
   int lens_steps = 0;
   merged.centroid_px.x() += 0.6;
@@ -78,11 +78,11 @@ TEST_F(RefineFew, BelievesFewWholeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
   add_tool(0, tool, truth, 1, random);
-  foretell(tool, aside, world_->predictions.tools[0]);
+  set_prediction(tool, aside, world_->predictions.tools[0]);
   EXPECT_EQ(run_one().reason, Reason::none);
-  for (int i = 0; i < 2; ++i) marker_of(0, i).flags = k_marker_uneven;
+  for (int i = 0; i < 2; ++i) marker_of(0, i).flags = k_marker_not_isolated;
   EXPECT_EQ(run_one().reason, Reason::bad_fit);
-  foretell(tool, truth, world_->predictions.tools[0]);
+  set_prediction(tool, truth, world_->predictions.tools[0]);
   EXPECT_EQ(run_one().reason, Reason::none);
 }
 
@@ -98,11 +98,11 @@ TEST_F(RefineFew, CountsNoMarkerOfAnotherSizeAsWhole) {
     for (int i = 0; i < 5; ++i) {
       marker_of(0, i).area_px = area_of(tool, truth, i, i < 2 ? part : 1);
     }
-    foretell(tool, aside, world_->predictions.tools[0]);
+    set_prediction(tool, aside, world_->predictions.tools[0]);
     EXPECT_EQ(run_one().reason == Reason::none, part == 1) << part;
-    foretell(tool, truth, world_->predictions.tools[0]);
+    set_prediction(tool, truth, world_->predictions.tools[0]);
     EXPECT_EQ(run_one().reason, Reason::none) << part;
-    EXPECT_EQ(run_one().tells_near, part != 1) << part;
+    EXPECT_EQ(run_one().has_relinearised, part != 1) << part;
   }
 }
 
@@ -112,18 +112,18 @@ TEST_F(RefineFew, TellsAFilterWhatFewMarkersSayNearWhereItExpectsTheTool) {
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 1, random);
   Prediction& prediction = world_->predictions.tools[0];
-  foretell(tool, truth, prediction);
-  EXPECT_FALSE(run_one().tells_near) << "five that agree need no help";
-  forget(0, 4);
-  forget(0, 3);
-  ASSERT_TRUE(run_one().tells_near);
-  const UncertainPose told = told_middle_of(run_one(), tool, Time{});
-  EXPECT_EQ(told.pose.translation, Vector3(run_one().near_T_camera_tool * tool.middle_m()));
-  EXPECT_EQ(told.covariance, run_one().near_covariance);
+  set_prediction(tool, truth, prediction);
+  EXPECT_FALSE(run_one().has_relinearised) << "five that agree need no help";
+  drop_marker(0, 4);
+  drop_marker(0, 3);
+  ASSERT_TRUE(run_one().has_relinearised);
+  const UncertainPose told = filter_measurement_of(run_one(), tool, Time{});
+  EXPECT_EQ(told.pose.translation, Vector3(run_one().relinearised_T_camera_tool * tool.middle_m()));
+  EXPECT_EQ(told.covariance, run_one().relinearised_covariance);
   EXPECT_LT((told.pose.translation - truth * tool.middle_m()).norm(), 0.01);
   prediction = {};
-  EXPECT_FALSE(run_one().tells_near) << "nothing is expected";
-  const UncertainPose alone = told_middle_of(run_one(), tool, Time{});
+  EXPECT_FALSE(run_one().has_relinearised) << "nothing is expected";
+  const UncertainPose alone = filter_measurement_of(run_one(), tool, Time{});
   EXPECT_EQ(alone.pose.translation, Vector3(run_one().T_camera_tool * tool.middle_m()));
 }
 
@@ -134,16 +134,16 @@ TEST_F(RefineFew, IsTheLessSureOfThreeMarkersTheLessTheyWereExpected) {
   add_tool(0, tool, truth, 0, random);
   Prediction& prediction = world_->predictions.tools[0];
   const auto sigma_aside = [&](double sigmas) {
-    foretell(tool, truth, prediction);
+    set_prediction(tool, truth, prediction);
     const double sigma_m = std::sqrt(prediction.covariance(0, 0));
-    foretell(tool, {truth.rotation, truth.translation + Vector3(sigmas * sigma_m, 0, 0)},
-             prediction);
+    set_prediction(tool, {truth.rotation, truth.translation + Vector3(sigmas * sigma_m, 0, 0)},
+                   prediction);
     return std::sqrt(run_one().covariance(0, 0));
   };
   const double all = sigma_aside(0);
   EXPECT_NEAR(sigma_aside(4), all, 1e-4 * all) << "five that agree are no chance";
-  forget(0, 4);
-  forget(0, 3);
+  drop_marker(0, 4);
+  drop_marker(0, 3);
   const double expected = sigma_aside(0);
   EXPECT_EQ(sigma_aside(1), expected) << "no more than noise";
   const double unexpected = sigma_aside(4);
@@ -159,13 +159,13 @@ TEST_F(RefineFew, ForgivesOnlyWhatTheMotionExplains) {
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
   add_tool(0, tool, truth, 0, random);
-  world_->assignment.labeling[0].predicted_worth_m2 = 1e-5;
+  world_->assignment.labeling[0].log_prior_ratio_m2 = 1e-5;
   marker_of(0, 2).surface_range_m += 0.03;
   Prediction& prediction = world_->predictions.tools[0];
-  foretell(tool, truth, prediction);
+  set_prediction(tool, truth, prediction);
   EXPECT_EQ(run_one().reason, Reason::none);
   EXPECT_EQ(run_one().marker_mask, 0b1011);
-  foretell(tool, aside, prediction);
+  set_prediction(tool, aside, prediction);
   EXPECT_EQ(run_one().reason, Reason::bad_fit);
 }
 

@@ -57,15 +57,15 @@ class RefinePoseTest : public testing::Test {
         .items[static_cast<std::size_t>(world_->assignment.labeling[static_cast<std::size_t>(t)]
                                             .marker[static_cast<std::size_t>(i)])];
   }
-  void forget(int t, int i) {
+  void drop_marker(int t, int i) {
     Labeling& labeling = world_->assignment.labeling[static_cast<std::size_t>(t)];
     labeling.marker[static_cast<std::size_t>(i)] = -1;
     --labeling.count;
   }
   void start_over() { world_->markers.count = set_.count = 0; }
-  const FittedTools& run(graph::Slice slice = {0, 1}) {
+  const FittedTools& run(graph::Partition partition = {0, 1}) {
     tools_.set(set_, 1, 0);
-    node_(verdict_, world_->markers, tools_, world_->predictions, world_->assignment, slice,
+    node_(verdict_, world_->markers, tools_, world_->predictions, world_->assignment, partition,
           world_->fitted);
     return world_->fitted;
   }
@@ -92,7 +92,7 @@ inline Vector6 error_of(const FittedTool& found, const Pose& truth, const Vector
 }
 
 // Prediction with 3 mm and 2 degrees at the markers' mean.
-inline void foretell(const Tool& tool, const Pose& T_camera_tool, Prediction& prediction) {
+inline void set_prediction(const Tool& tool, const Pose& T_camera_tool, Prediction& prediction) {
   prediction.follows_motion = true;
   prediction.T_camera_tool = T_camera_tool;
   prediction.covariance.diagonal() << Vector3::Constant(9e-6), Vector3::Constant(1.2e-3);

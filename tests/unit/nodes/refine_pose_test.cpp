@@ -8,11 +8,11 @@ namespace glint {
 namespace {
 
 using test::error_of;
-using test::foretell;
 using test::k_pixel_sigma_px;
 using test::k_place;
 using test::k_range_sigma_m;
 using test::Random;
+using test::set_prediction;
 
 class RefinePose : public test::RefinePoseTest {};
 
@@ -68,16 +68,16 @@ TEST_F(RefinePose, WeighsMarkersByTheNoiseThatWasSeenAndStatesTheirResiduals) {
     const Vector6 error = error_of(found, truth, tool.tip_m);
     nees += error.dot(pose_factor(found.covariance).value.solve(error)) / (6 * k_trials);
     sums.range.squares += found.residuals.range.squares;
-    sums.range.freedom += found.residuals.range.freedom;
+    sums.range.redundancy += found.residuals.range.redundancy;
     sums.pixel.squares += found.residuals.pixel.squares;
-    sums.pixel.freedom += found.residuals.pixel.freedom;
+    sums.pixel.redundancy += found.residuals.pixel.redundancy;
   }
   EXPECT_NEAR(nees, 1, 0.08);
-  EXPECT_NEAR(std::sqrt(sums.range.squares / sums.range.freedom), 3 * k_range_sigma_m,
+  EXPECT_NEAR(std::sqrt(sums.range.squares / sums.range.redundancy), 3 * k_range_sigma_m,
               0.05 * 3 * k_range_sigma_m);
-  EXPECT_NEAR(std::sqrt(sums.pixel.squares / sums.pixel.freedom), 3 * k_pixel_sigma_px,
+  EXPECT_NEAR(std::sqrt(sums.pixel.squares / sums.pixel.redundancy), 3 * k_pixel_sigma_px,
               0.05 * 3 * k_pixel_sigma_px);
-  EXPECT_NEAR((sums.range.freedom + sums.pixel.freedom) / k_trials, 3 * 6 - 6, 0.01);
+  EXPECT_NEAR((sums.range.redundancy + sums.pixel.redundancy) / k_trials, 3 * 6 - 6, 0.01);
 }
 
 // Their residuals would be in metres and state nothing about pixels.
@@ -88,7 +88,7 @@ TEST_F(RefinePose, StatesNoResidualsOfPointsWithoutAnImage) {
   for (int i = 0; i < 6; ++i) marker_of(0, i).along_x = marker_of(0, i).along_y = Vector3::Zero();
   const FittedTool& found = run_one();
   ASSERT_EQ(found.reason, Reason::none);
-  EXPECT_EQ(found.residuals.pixel.freedom, 0);
+  EXPECT_EQ(found.residuals.pixel.redundancy, 0);
 }
 
 TEST_F(RefinePose, LeavesOutOneBadMarkerOfFiveAndTheMaskSaysSo) {
@@ -99,7 +99,7 @@ TEST_F(RefinePose, LeavesOutOneBadMarkerOfFiveAndTheMaskSaysSo) {
     const Tool tool = test::random_tool(random, 6);
     const Pose truth = test::tilted_pose(tool, 0.5, k_place, random);
     add_tool(0, tool, truth, 0, random);
-    forget(0, 1);  // so that the indices of the visible markers differ from the tool's
+    drop_marker(0, 1);  // so that the indices of the visible markers differ from the tool's
     marker_of(0, bad).surface_range_m += 0.05;
     const FittedTool& found = run_one();
     ASSERT_EQ(found.reason, Reason::none) << bad;
@@ -158,8 +158,8 @@ TEST_F(RefinePose, SaysWhyAToolHasNoPoseAndGivesNone) {
   EXPECT_EQ(reason_of(), Reason::bad_fit);
   marker_of(0, 1).surface_range_m = -1;
   EXPECT_EQ(reason_of(), Reason::out_of_range);
-  forget(0, 1);
-  forget(0, 2);
+  drop_marker(0, 1);
+  drop_marker(0, 2);
   EXPECT_EQ(reason_of(), Reason::too_few_markers);
 
   start_over();
@@ -172,8 +172,8 @@ TEST_F(RefinePose, SaysWhyAToolHasNoPoseAndGivesNone) {
 
   start_over();
   add_tool(0, flat, truth, 0, random);
-  world_->assignment.reason[0] = Reason::taken_by_other;
-  EXPECT_EQ(reason_of(), Reason::taken_by_other);
+  world_->assignment.reason[0] = Reason::markers_assigned_elsewhere;
+  EXPECT_EQ(reason_of(), Reason::markers_assigned_elsewhere);
   verdict_.reason = Reason::frame_late;
   EXPECT_EQ(reason_of(), Reason::frame_late);
 }
@@ -189,14 +189,14 @@ TEST_F(RefinePose, FitsEachToolInOneSliceAlike) {
   graph::LoopCounts sum{};
   const graph::LoopCounts together = node_.counts();
   world_->fitted = {};
-  for (int slice = 0; slice < k_tool_slices; ++slice) {
+  for (int slice = 0; slice < k_tool_partitions; ++slice) {
     FittedTools before = world_->fitted;
-    run({slice, k_tool_slices});
+    run({slice, k_tool_partitions});
     for (std::size_t loop = 0; loop < glint::RefinePose::k_loops.size(); ++loop)
       sum[loop] += node_.counts()[loop];
     for (int t = 0; t < 7; ++t) {
       const FittedTool& found = world_->fitted.tools[static_cast<std::size_t>(t)];
-      const bool own = t % k_tool_slices == slice;
+      const bool own = t % k_tool_partitions == slice;
       const FittedTool& expected = (own ? whole : before).tools[static_cast<std::size_t>(t)];
       EXPECT_EQ(found.reason, expected.reason) << t;
       EXPECT_EQ(found.rms_m, expected.rms_m) << t;
@@ -226,13 +226,14 @@ TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
       const bool few = trial % 2 == 1;
       Prediction& prediction = world_->predictions.tools[static_cast<std::size_t>(t)];
       prediction = {};
-      if (few) foretell(tool, pose, prediction);
-      for (int i = 3; few && i < tool.marker_count; ++i) marker_of(t, i).flags = k_marker_uneven;
+      if (few) set_prediction(tool, pose, prediction);
+      for (int i = 3; few && i < tool.marker_count; ++i)
+        marker_of(t, i).flags = k_marker_not_isolated;
       for (int bad = 0; bad < (few ? 1 : 2); ++bad)
         marker_of(t, bad).surface_range_m *= random.within(0.3, 3);
-      Labeling& rival = world_->assignment.rival[static_cast<std::size_t>(t)];
-      rival = world_->assignment.labeling[static_cast<std::size_t>(t)];
-      std::swap(rival.marker[0], rival.marker[1]);
+      Labeling& alternative = world_->assignment.alternative[static_cast<std::size_t>(t)];
+      alternative = world_->assignment.labeling[static_cast<std::size_t>(t)];
+      std::swap(alternative.marker[0], alternative.marker[1]);
     }
     run();
     EXPECT_TRUE(graph::within(node_.counts(), worst)) << trial;
@@ -250,7 +251,7 @@ TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotion
   const Tool tool = test::flat_tool();
   node_.noise.range_sigma_m = 0.015;
   node_.noise.pixel_sigma_px = 0.3;
-  int ambiguous = 0, decided = 0, apart = 0, turned = 0;
+  int ambiguous = 0, decided = 0, apart = 0, restarted = 0;
   constexpr int k_trials = 200;
   for (int trial = 0; trial < k_trials; ++trial) {
     start_over();
@@ -259,18 +260,19 @@ TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotion
     Prediction& prediction = world_->predictions.tools[0];
     prediction = {};
     ambiguous += run_one().ambiguous() ? 1 : 0;
-    foretell(tool, truth, prediction);
+    set_prediction(tool, truth, prediction);
     decided += run_one().ambiguous() ? 0 : 1;
     // Long tracked on the wrong branch: the prediction is the mirrored pose.
-    foretell(tool, depth_flipped(truth, Vector3::UnitX(), test::mean_of_markers(tool)), prediction);
+    set_prediction(tool, depth_flipped(truth, Vector3::UnitX(), test::mean_of_markers(tool)),
+                   prediction);
     prediction.odds = 0;
     const FittedTool& wrong = run_one();
-    apart += wrong.odds < k_odds_most ? 1 : 0;
-    turned += wrong.turned ? 1 : 0;
+    apart += wrong.odds < k_odds_max ? 1 : 0;
+    restarted += wrong.contradicts_track ? 1 : 0;
   }
   EXPECT_GT(ambiguous, 0.5 * k_trials);
   EXPECT_GT(decided, 0.9 * k_trials);
-  EXPECT_GT(turned, 0.5 * k_trials) << "odds of zero let the frame decide";
+  EXPECT_GT(restarted, 0.5 * k_trials) << "odds of zero let the frame decide";
   EXPECT_GT(apart, 0.5 * k_trials);
 }
 
@@ -284,7 +286,7 @@ TEST_F(RefinePose, IsAmbiguousUntilTheNoiseIsKnown) {
   for (int trial = 0; trial < k_trials; ++trial) {
     start_over();
     add_tool(0, tool, test::tilted_pose(tool, 0.25, k_place, random), 1, random);
-    forget(0, 3);
+    drop_marker(0, 3);
     later += run_one().ambiguous() ? 1 : 0;
     node_.estimate_noise = true;
     at_first += run_one().ambiguous() ? 1 : 0;
@@ -307,11 +309,11 @@ TEST_F(RefinePose, StatesOfAFlatToolFaceOnWhatItsRangesShow) {
           .covariance.bottomRightCorner<3, 3>()
           .trace();
   const FittedTool first = run_one();
-  EXPECT_FALSE(first.tells_near) << "nothing is expected";
+  EXPECT_FALSE(first.has_relinearised) << "nothing is expected";
   const double turn = first.covariance.bottomRightCorner<3, 3>().trace();
   EXPECT_GT(turn, 1.2 * turn_alone);
-  foretell(tool, truth, world_->predictions.tools[0]);
-  EXPECT_TRUE(run_one().tells_near);
+  set_prediction(tool, truth, world_->predictions.tools[0]);
+  EXPECT_TRUE(run_one().has_relinearised);
 }
 
 TEST_F(RefinePose, TakesTheRivalLabelingWhereTheNoiseExplainsItBetter) {
@@ -319,13 +321,13 @@ TEST_F(RefinePose, TakesTheRivalLabelingWhereTheNoiseExplainsItBetter) {
   const Tool tool = test::random_tool(random, 5);
   add_tool(0, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
   Labeling& labeling = world_->assignment.labeling[0];
-  Labeling& rival = world_->assignment.rival[0];
-  rival = labeling;
+  Labeling& alternative = world_->assignment.alternative[0];
+  alternative = labeling;
   std::swap(labeling.marker[0], labeling.marker[1]);
   const FittedTool& found = run_one();
   EXPECT_EQ(found.reason, Reason::none);
-  EXPECT_TRUE(found.by_rival);
-  EXPECT_EQ(&labeling_of(world_->assignment, found, 0), &rival);
+  EXPECT_TRUE(found.by_alternative);
+  EXPECT_EQ(&labeling_of(world_->assignment, found, 0), &alternative);
 }
 
 TEST_F(RefinePose, CountsTheMarkersOfItsFitsAndTheirSteps) {
@@ -348,7 +350,7 @@ TEST_F(RefinePose, LeavesOneOfFourOutOnlyWhereAllLieWhereTheyWerePredicted) {
   add_tool(0, tool, truth, 0, random);
   marker_of(0, 2).surface_range_m += 0.03;
   EXPECT_EQ(run_one().reason, Reason::bad_fit);
-  world_->assignment.labeling[0].predicted_worth_m2 = 1e-5;
+  world_->assignment.labeling[0].log_prior_ratio_m2 = 1e-5;
   EXPECT_EQ(run_one().reason, Reason::none);
   EXPECT_EQ(run_one().marker_mask, 0b1011);
   EXPECT_LT(error_of(run_one(), truth, tool.tip_m).head<3>().norm(), 0.0005);
@@ -359,13 +361,13 @@ TEST_F(RefinePose, IsLessSureOfMarkersThatAreOffByMoreThanTheirNoise) {
   const Tool tool = test::five_marker_pen();
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 0, random);
-  const Matrix6 sure = run_one().covariance;
+  const Matrix6 tight_covariance = run_one().covariance;
   const double off[] = {0.008, -0.007, 0.009, -0.008, 0.007};  // about five sigmas each
   for (int i = 0; i < tool.marker_count; ++i) marker_of(0, i).surface_range_m += off[i];
   const FittedTool& found = run_one();
   ASSERT_EQ(found.reason, Reason::none);
   EXPECT_EQ(found.marker_mask, 31);
-  EXPECT_GT(found.covariance(2, 2), 4 * sure(2, 2));
+  EXPECT_GT(found.covariance(2, 2), 4 * tight_covariance(2, 2));
   const Vector6 error = error_of(found, truth, tool.tip_m);
   EXPECT_LT(error.dot(pose_factor(found.covariance).value.solve(error)), 20);
 }

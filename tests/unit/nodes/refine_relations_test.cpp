@@ -7,9 +7,9 @@
 namespace glint {
 namespace {
 
-using test::foretell;
 using test::k_place;
 using test::Random;
+using test::set_prediction;
 
 class RefineRelations : public test::RefinePoseTest {
  protected:
@@ -21,7 +21,7 @@ class RefineRelations : public test::RefinePoseTest {
       marker.sigma_px = {0.02F * static_cast<float>(1 + i), 0.03F * static_cast<float>(1 + i)};
     }
   }
-  void spoil_ranges(const Tool& tool, double factor) {
+  void add_range_errors(const Tool& tool, double factor) {
     constexpr double k_off[] = {0.008, -0.007, 0.009, -0.008, 0.007};
     for (int i = 0; i < tool.marker_count; ++i)
       marker_of(0, i).surface_range_m += factor * k_off[i];
@@ -39,7 +39,7 @@ TEST_F(RefineRelations, AMarkerLeftOutIsAsOneThatWasNotSeen) {
     vary_noise();
     marker_of(0, bad).surface_range_m += 0.08;
     const FittedTool left_out = run_one();
-    forget(0, bad);
+    drop_marker(0, bad);
     const FittedTool unseen = run_one();
     ASSERT_EQ(left_out.reason, Reason::none) << bad;
     ASSERT_EQ(unseen.reason, Reason::none) << bad;
@@ -49,9 +49,9 @@ TEST_F(RefineRelations, AMarkerLeftOutIsAsOneThatWasNotSeen) {
     EXPECT_LT((left_out.covariance - unseen.covariance).norm(), 1e-4 * unseen.covariance.norm());
     const MarkerResiduals &a = left_out.residuals, &b = unseen.residuals;
     EXPECT_NEAR(a.range.squares, b.range.squares, 1e-3 * std::abs(b.range.squares));
-    EXPECT_NEAR(a.range.freedom, b.range.freedom, 1e-4);
+    EXPECT_NEAR(a.range.redundancy, b.range.redundancy, 1e-4);
     EXPECT_NEAR(a.pixel.squares, b.pixel.squares, 1e-3 * std::abs(b.pixel.squares));
-    EXPECT_NEAR(a.pixel.freedom, b.pixel.freedom, 1e-4);
+    EXPECT_NEAR(a.pixel.redundancy, b.pixel.redundancy, 1e-4);
     const Matrix6& expected = unseen.systematic.calibration;
     EXPECT_LT((left_out.systematic.calibration - expected).norm(), 1e-3 * expected.norm());
     const Matrix6 correlated = unseen.systematic.correlated.sum();
@@ -67,7 +67,7 @@ TEST_F(RefineRelations, ResidualsBeyondTheNoiseWidenThePoseBySquares) {
   const auto variance = [&](double factor) {
     start_over();
     add_tool(0, tool, truth, 0, random);
-    spoil_ranges(tool, factor);
+    add_range_errors(tool, factor);
     const FittedTool& found = run_one();
     EXPECT_EQ(found.reason, Reason::none) << factor;
     return found.covariance(2, 2);
@@ -79,7 +79,7 @@ TEST_F(RefineRelations, ResidualsBeyondTheNoiseWidenThePoseBySquares) {
   EXPECT_NEAR(variance(0.1), at_rest, 0.03 * at_rest) << "within the noise";
   start_over();
   add_tool(0, tool, truth, 0, random);
-  spoil_ranges(tool, 4);
+  add_range_errors(tool, 4);
   EXPECT_EQ(run_one().reason, Reason::bad_fit) << "beyond four times the noise";
 }
 
@@ -102,9 +102,9 @@ TEST_F(RefineRelations, UnknownNoiseTakesOddsByTheFactorOfItsDoubt) {
     EXPECT_EQ(unknown.reason, known.reason);
     EXPECT_EQ(unknown.T_camera_tool.translation, known.T_camera_tool.translation);
     EXPECT_EQ(unknown.covariance, known.covariance);
-    if (known.odds >= k_odds_most) continue;
+    if (known.odds >= k_odds_max) continue;
     ++compared;
-    EXPECT_NEAR(unknown.odds, known.odds / k_noise_variance_open, 1e-9) << trial;
+    EXPECT_NEAR(unknown.odds, known.odds / k_noise_variance_inflation, 1e-9) << trial;
   }
   EXPECT_GT(compared, 10);
 }
@@ -116,18 +116,18 @@ TEST_F(RefineRelations, ARivalIsFittedAndCountedBesideTheLabeling) {
   add_tool(0, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
   (void)run_one();
   const graph::LoopCounts alone = node_.counts();
-  Labeling& rival = world_->assignment.rival[0];
-  rival = world_->assignment.labeling[0];
-  std::swap(rival.marker[0], rival.marker[1]);
+  Labeling& alternative = world_->assignment.alternative[0];
+  alternative = world_->assignment.labeling[0];
+  std::swap(alternative.marker[0], alternative.marker[1]);
   const FittedTool& found = run_one();
-  EXPECT_FALSE(found.by_rival);
+  EXPECT_FALSE(found.by_alternative);
   const graph::LoopCounts both = node_.counts();
   EXPECT_EQ(both[2], alone[2] + 2);
   EXPECT_GT(both[3], alone[3]);
   EXPECT_EQ(both[4] - alone[4], 5 * (both[3] - alone[3]));
-  rival.marker.fill(-1);
-  rival.marker[0] = world_->assignment.labeling[0].marker[0];
-  rival.count = 1;
+  alternative.marker.fill(-1);
+  alternative.marker[0] = world_->assignment.labeling[0].marker[0];
+  alternative.count = 1;
   EXPECT_EQ(run_one().reason, Reason::none) << "a rival that has no pose takes nothing away";
 }
 
@@ -138,9 +138,9 @@ TEST_F(RefineRelations, ARivalWithAMarkerBehindTheCameraCountsForNothing) {
   add_tool(0, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
   const FittedTool alone = run_one();
   const graph::LoopCounts counts = node_.counts();
-  Labeling& rival = world_->assignment.rival[0];
-  rival = world_->assignment.labeling[0];
-  rival.marker[0] = static_cast<std::int16_t>(world_->markers.count);
+  Labeling& alternative = world_->assignment.alternative[0];
+  alternative = world_->assignment.labeling[0];
+  alternative.marker[0] = static_cast<std::int16_t>(world_->markers.count);
   world_->markers.items[static_cast<std::size_t>(world_->markers.count++)].surface_range_m = -1;
   const FittedTool& found = run_one();
   EXPECT_EQ(found.reason, Reason::none);
@@ -154,13 +154,13 @@ TEST_F(RefineRelations, AnExpectationOfFewMarkersCostsOneFitMore) {
   const Tool tool = test::five_marker_pen();
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 1, random);
-  forget(0, 4);
-  forget(0, 3);
+  drop_marker(0, 4);
+  drop_marker(0, 3);
   (void)run_one();
   const graph::LoopCounts alone = node_.counts();
   EXPECT_EQ(alone[4], 3 * alone[3]);
-  foretell(tool, truth, world_->predictions.tools[0]);
-  ASSERT_TRUE(run_one().tells_near);
+  set_prediction(tool, truth, world_->predictions.tools[0]);
+  ASSERT_TRUE(run_one().has_relinearised);
   EXPECT_EQ(node_.counts()[2], alone[2] + 1);
   EXPECT_GT(node_.counts()[3], alone[3]);
   EXPECT_EQ(node_.counts()[4], 3 * node_.counts()[3]);
@@ -187,25 +187,27 @@ TEST_F(RefineRelations, ThreeMarkersGrowUnsureByTheirSurprise) {
   Tool tool = test::five_marker_pen();
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 0, random);
-  forget(0, 4);
-  forget(0, 3);
+  drop_marker(0, 4);
+  drop_marker(0, 3);
   Prediction& prediction = world_->predictions.tools[0];
-  foretell(tool, truth, prediction);
+  set_prediction(tool, truth, prediction);
   const Matrix6 expected_here = run_one().covariance;
-  int grown = 0;
+  int inflated_count = 0;
   for (const double sigmas : {3.2, 3.6, 4.0}) {
-    foretell(tool, {truth.rotation, truth.translation + Vector3(sigmas * 0.003, 0, 0)}, prediction);
+    set_prediction(tool, {truth.rotation, truth.translation + Vector3(sigmas * 0.003, 0, 0)},
+                   prediction);
     const FittedTool& found = run_one();
     ASSERT_EQ(found.reason, Reason::none) << sigmas;
-    const double growth = found.covariance.trace() / expected_here.trace();
-    const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance,
-                                   tool.middle_m()};
-    const Matrix6 near = found.near_covariance / growth;
-    const double surprise = surprise_of(expected, found.near_T_camera_tool, near, tool.middle_m());
-    EXPECT_NEAR(growth, std::max(1.0, surprise / 6), 0.02 * growth) << sigmas;
-    grown += growth > 1.01 ? 1 : 0;
+    const double inflation = found.covariance.trace() / expected_here.trace();
+    const PredictedPose expected = {prediction.T_camera_tool, prediction.covariance,
+                                    tool.middle_m()};
+    const Matrix6 near = found.relinearised_covariance / inflation;
+    const double nis =
+        mahalanobis_square(expected, found.relinearised_T_camera_tool, near, tool.middle_m());
+    EXPECT_NEAR(inflation, std::max(1.0, nis / 6), 0.02 * inflation) << sigmas;
+    inflated_count += inflation > 1.01 ? 1 : 0;
   }
-  EXPECT_GT(grown, 0);
+  EXPECT_GT(inflated_count, 0);
 }
 
 // The measured mean error is subtracted from the pose for the filter as well.
@@ -214,18 +216,19 @@ TEST_F(RefineRelations, AMeasuredMeanErrorIsTakenOffBothPoses) {
   const Tool tool = test::five_marker_pen();
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 1, random);
-  forget(0, 4);
-  forget(0, 3);
-  foretell(tool, truth, world_->predictions.tools[0]);
+  drop_marker(0, 4);
+  drop_marker(0, 3);
+  set_prediction(tool, truth, world_->predictions.tools[0]);
   const FittedTool plain = run_one();
-  ASSERT_TRUE(plain.tells_near);
+  ASSERT_TRUE(plain.has_relinearised);
   const Vector3 off(0.002, 0, 0);
   node_.correction = {CorrectionFrame::camera, off, Vector3::Zero(), {0, 2}, {-1, 1}, {-1, 1}};
   const FittedTool& found = run_one();
   EXPECT_TRUE(
       (found.T_camera_tool.translation - plain.T_camera_tool.translation).isApprox(off, 1e-9));
-  EXPECT_TRUE((found.near_T_camera_tool.translation - plain.near_T_camera_tool.translation)
-                  .isApprox(off, 1e-9));
+  EXPECT_TRUE(
+      (found.relinearised_T_camera_tool.translation - plain.relinearised_T_camera_tool.translation)
+          .isApprox(off, 1e-9));
 }
 
 TEST_F(RefineRelations, AToolOfMoreMarkersThanTheCellsIsFittedByThoseThatItHas) {

@@ -28,7 +28,7 @@ class TrackFields : public testing::Test {
     }
     anchor_.now.head.valid = true;
     anchor_.now.head.T_world_camera = {random_.rotation(), Vector3(1, 2, 3)};
-    anchor_.now.lasting = test::random_covariance<6>(random_, 0.01);
+    anchor_.now.shared = test::random_covariance<6>(random_, 0.01);
     anchor_.now.pivot_m = Vector3(3, 2, 1);
     FittedTool& fit = found();
     fit.reason = Reason::none;
@@ -36,16 +36,16 @@ class TrackFields : public testing::Test {
     fit.marker_mask = 0b101;
     fit.rms_m = 0.0007;
     fit.odds = 23;
-    FollowedTool& follow = followed();
+    TrackedTool& follow = followed();
     follow.reason = Reason::none;
-    follow.stands = true;
+    follow.is_publishable = true;
     follow.base = ReferenceFrame::world;
     follow.estimate = test::random_state(random_);
     follow.noise = {1.25, 2.5};
-    follow.few_mask = 0;
+    follow.partial_mask = 0;
     // A second pose that differs from the prediction; the size of the difference is irrelevant.
     const ToolMotionSettings settings;
-    RestSums sums;
+    StaticWindowSums sums;
     UncertainPose seen;
     seen.covariance = Matrix6::Identity() * 1e-8;
     EXPECT_EQ(follow.motion.update(seen, {}, settings, sums).reason, Reason::none);
@@ -54,8 +54,8 @@ class TrackFields : public testing::Test {
     EXPECT_EQ(follow.motion.update(seen, {}, settings, sums).reason, Reason::none);
   }
   FittedTool& found() { return (*fitted_)[1].tools[k_tool]; }
-  FollowedTool& followed() { return (*followed_)[1].items[1]; }
-  [[nodiscard]] double chi_square() { return followed().motion.last_correction().chi_square; }
+  TrackedTool& followed() { return (*followed_)[1].items[1]; }
+  [[nodiscard]] double chi_square() { return followed().motion.last_correction().nis; }
   const Track& frame(std::int64_t ms) {
     verdict_.stamp.mid_exposure = Time{} + milliseconds(ms);
     verdict_.stamp.sequence = static_cast<std::uint64_t>(7 * ms);
@@ -68,10 +68,10 @@ class TrackFields : public testing::Test {
     return out_->tracks[k_tool];
   }
   // A frame with one or two visible markers.
-  const Track& few(std::int64_t ms, bool stands) {
+  const Track& partial_frame(std::int64_t ms, bool is_publishable) {
     followed().reason = found().reason = Reason::too_few_markers;
-    followed().few_mask = 0b10;
-    followed().stands = stands;
+    followed().partial_mask = 0b10;
+    followed().is_publishable = is_publishable;
     return frame(ms);
   }
 
@@ -79,10 +79,10 @@ class TrackFields : public testing::Test {
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
   Anchor anchor_;
   FrameVerdict verdict_;
-  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
-      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
-  std::unique_ptr<graph::Parts<FollowedTools, k_tool_slices>> followed_ =
-      std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_partitions>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_partitions>>();
+  std::unique_ptr<graph::Parts<FollowedTools, k_tool_partitions>> followed_ =
+      std::make_unique<graph::Parts<FollowedTools, k_tool_partitions>>();
   std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>(),
                              out_ = std::make_unique<Estimates>();
   glint::TrackTools node_;
@@ -95,8 +95,8 @@ double distance(const Pose& a, const Pose& b) {
 
 TEST_F(TrackFields, AreOfThePoseItsFrameAndItsMotion) {
   const Track track = frame(22);
-  EXPECT_TRUE(track.alive && track.seen_now);
-  EXPECT_FALSE(track.doubted || track.filtered || track.has_previous);
+  EXPECT_TRUE(track.alive && track.measured_now);
+  EXPECT_FALSE(track.unconfirmed || track.is_filter_pose || track.has_previous);
   EXPECT_EQ(track.reason, Reason::none);
   EXPECT_EQ(track.base, ReferenceFrame::world);
   EXPECT_EQ(track.marker_mask, 0b101);
@@ -114,8 +114,8 @@ TEST_F(TrackFields, AreOfThePoseItsFrameAndItsMotion) {
   EXPECT_EQ(track.noise.linear, 1.25);
   EXPECT_EQ(track.noise.angular, 2.5);
   ASSERT_GT(chi_square(), 12);
-  EXPECT_DOUBLE_EQ(track.surprise, chi_square() / 6);
-  EXPECT_EQ(track.head_covariance, anchor_.now.lasting_at(followed().estimate.pose.translation));
+  EXPECT_DOUBLE_EQ(track.nis_ratio, chi_square() / 6);
+  EXPECT_EQ(track.head_covariance, anchor_.now.shared_at(followed().estimate.pose.translation));
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 6, 1}}));
 }
 
@@ -132,7 +132,7 @@ TEST_F(TrackFields, OfAPoseInTheCamerasFrameAreTheCameras) {
 // The published NIS over its dimension is at least 1.
 TEST_F(TrackFields, OfAnExpectedPoseHaveNoSurprise) {
   followed().motion = MotionTrack{};
-  EXPECT_EQ(frame(22).surprise, 1);
+  EXPECT_EQ(frame(22).nis_ratio, 1);
 }
 
 // The previous pose, if recent and of the same base: at the limit and just above it.
@@ -159,15 +159,15 @@ TEST_F(TrackFields, OfFewMarkersAreTheFiltersAndKeepWhatThreeGave) {
   const Track before = frame(22);
   followed().estimate = test::random_state(random_);
   followed().noise = {3.5, 4.5};
-  const Track track = few(44, true);
+  const Track track = partial_frame(44, true);
   const Pose of_tool = {followed().estimate.pose.rotation,
                         followed().estimate.pose * Vector3(-set_->items[k_tool].middle_m())};
   EXPECT_LT(distance(track.newest.pose, of_tool), 1e-12);
   EXPECT_LT(distance(track.T_camera_tool, anchor_.now.head.T_world_camera.inverse() * of_tool),
             1e-12);
   EXPECT_EQ(track.newest.time, Time{} + milliseconds(44));
-  EXPECT_TRUE(track.filtered && track.alive);
-  EXPECT_FALSE(track.has_previous || track.seen_now);
+  EXPECT_TRUE(track.is_filter_pose && track.alive);
+  EXPECT_FALSE(track.has_previous || track.measured_now);
   EXPECT_EQ(track.marker_mask, 0b10);
   EXPECT_EQ(track.frame_sequence, 308U);
   EXPECT_EQ(track.stamp_sigma.nanoseconds, 45);
@@ -175,15 +175,15 @@ TEST_F(TrackFields, OfFewMarkersAreTheFiltersAndKeepWhatThreeGave) {
   EXPECT_EQ(track.odds, before.odds);
   EXPECT_EQ(track.noise.angular, 4.5);
   EXPECT_EQ(track.motion.covariance, followed().estimate.covariance);
-  EXPECT_DOUBLE_EQ(track.surprise, chi_square() / 3) << "of a point's three numbers";
-  EXPECT_EQ(track.head_covariance, anchor_.now.lasting_at(followed().estimate.pose.translation));
+  EXPECT_DOUBLE_EQ(track.nis_ratio, chi_square() / 3) << "of a point's three numbers";
+  EXPECT_EQ(track.head_covariance, anchor_.now.shared_at(followed().estimate.pose.translation));
   // In the camera frame the head adds no covariance.
   *out_ = {};
   anchor_.now.head.valid = false;
   followed().base = ReferenceFrame::camera;
   followed().reason = found().reason = Reason::none;
   (void)frame(22);
-  const Track camera = few(44, true);
+  const Track camera = partial_frame(44, true);
   EXPECT_LT(distance(camera.T_camera_tool, of_tool), 1e-12);
   EXPECT_TRUE(camera.head_covariance.isZero());
 }
@@ -192,7 +192,7 @@ TEST_F(TrackFields, OfFewMarkersThatAreUnsureMoveOnTheMotionAlone) {
   const Track before = frame(22);
   followed().estimate = test::random_state(random_);
   followed().correlated_covariance(3, 3) = 8e-6;
-  const Track track = few(44, false);
+  const Track track = partial_frame(44, false);
   EXPECT_EQ(track.motion.pose.translation, followed().estimate.pose.translation);
   EXPECT_EQ(track.correlated_covariance(3, 3), 8e-6);
   EXPECT_EQ(track.newest.time, before.newest.time);
@@ -208,7 +208,7 @@ TEST_F(TrackFields, GoFurtherThanTheLimitNoMore) {
   EXPECT_TRUE(frame(140).alive);
   EXPECT_EQ(out_->tracks[k_tool].reason, Reason::no_labeling);
   const Track lost = frame(141);
-  EXPECT_FALSE(lost.alive || lost.seen_now);
+  EXPECT_FALSE(lost.alive || lost.measured_now);
   EXPECT_EQ(lost.reason, Reason::no_labeling) << "why it is lost";
   EXPECT_EQ(lost.identity, 55U);
   EXPECT_EQ(lost.newest.time, Time{});
@@ -218,15 +218,18 @@ TEST_F(TrackFields, GoFurtherThanTheLimitNoMore) {
 TEST_F(TrackFields, MoveAlongWithTheWorld) {
   (void)frame(22);
   const Track before = frame(44);
-  anchor_.now.moved = {from_rotation_vector(Vector3(0.1, 0.2, -0.1)), Vector3(0.3, 0.1, 0.2)};
+  anchor_.now.gap_correction = {from_rotation_vector(Vector3(0.1, 0.2, -0.1)),
+                                Vector3(0.3, 0.1, 0.2)};
   anchor_.now.moved_along = true;
   followed().reason = found().reason = Reason::no_labeling;
   const Track moved = frame(66);
-  EXPECT_LT(distance(moved.newest.pose, anchor_.now.moved * before.newest.pose), 1e-12);
-  EXPECT_LT(distance(moved.previous.pose, anchor_.now.moved * before.previous.pose), 1e-12);
-  EXPECT_LT(distance(moved.motion.pose, anchor_.now.moved * before.motion.pose), 1e-12);
+  EXPECT_LT(distance(moved.newest.pose, anchor_.now.gap_correction * before.newest.pose), 1e-12);
+  EXPECT_LT(distance(moved.previous.pose, anchor_.now.gap_correction * before.previous.pose),
+            1e-12);
+  EXPECT_LT(distance(moved.motion.pose, anchor_.now.gap_correction * before.motion.pose), 1e-12);
   EXPECT_LT(
-      (moved.motion.velocity_m_s - anchor_.now.moved.rotation * before.motion.velocity_m_s).norm(),
+      (moved.motion.velocity_m_s - anchor_.now.gap_correction.rotation * before.motion.velocity_m_s)
+          .norm(),
       1e-12);
   out_->tracks[k_tool] = before;
   out_->tracks[k_tool].base = ReferenceFrame::camera;
@@ -244,7 +247,7 @@ TEST_F(TrackFields, OfTheFrameAreItsVerdictTipsAndReference) {
   EXPECT_EQ(out_->verdict.accepted, 77U);
   EXPECT_EQ(out_->verdict.stamp.sequence, 154U);
   EXPECT_EQ(out_->T_world_reference.translation, Vector3(7, 8, 9));
-  EXPECT_FALSE(out_->reference_known);
+  EXPECT_FALSE(out_->has_reference);
   for (std::size_t t = 0; t < 6; ++t) {
     const Tool& tool = set_->items[t];
     EXPECT_EQ(out_->tips[t].arm_m, Vector3(tool.tip_m - tool.middle_m()));
@@ -255,7 +258,7 @@ TEST_F(TrackFields, OfTheFrameAreItsVerdictTipsAndReference) {
   const UncertainPose body{head.time, {}, Matrix6::Identity() * 1e-8};
   (void)anchor_.state.update(head, &body, {});
   (void)frame(44);
-  EXPECT_TRUE(out_->reference_known);
+  EXPECT_TRUE(out_->has_reference);
 }
 
 TEST_F(TrackFields, BeyondTheToolsAreCleared) {
@@ -281,7 +284,7 @@ TEST_F(TrackFields, GiveTheTipsCovarianceAboutTheCamerasAxes) {
   fit.systematic.calibration = test::random_covariance<6>(random_, 0.003);
   fit.systematic.correlated.fast = test::random_covariance<6>(random_, 0.001);
   fit.systematic.correlated.slow = test::random_covariance<6>(random_, 0.002);
-  const TipPlace tip{Vector3(0.02, -0.1, 0.05), 0.004};
+  const TipPosition tip{Vector3(0.02, -0.1, 0.05), 0.004};
   const Matrix6 lever = pose_by_pose(track.T_camera_tool.rotation * tip.arm_m);
   Matrix6 systematic = lever *
                        (fit.systematic.calibration + fit.systematic.correlated.fast +
@@ -289,7 +292,7 @@ TEST_F(TrackFields, GiveTheTipsCovarianceAboutTheCamerasAxes) {
                        lever.transpose();
   systematic.diagonal().head<3>().array() += 0.004 * 0.004;
   EXPECT_LT((tip_covariance(track, fit, tip) - fit.covariance - systematic).norm(), 1e-15);
-  track.filtered = true;
+  track.is_filter_pose = true;
   Matrix6 of_motion;
   const int place[] = {k_position, k_position + 1, k_position + 2,
                        k_rotation, k_rotation + 1, k_rotation + 2};

@@ -16,7 +16,7 @@ class TrackToolsInTime : public testing::Test {
     tool.markers_m = {Vector3(0, 0, 0), Vector3(0.06, 0, 0), Vector3(0, 0.06, 0)};
     tool.identity = 5;
   }
-  FollowedTool& followed() { return (*followed_)[0].items[0]; }
+  TrackedTool& followed() { return (*followed_)[0].items[0]; }
   const Track& frame() {
     graph::Latest<ToolSet> tools;
     tools.set(*set_, 1, 0);
@@ -30,25 +30,25 @@ class TrackToolsInTime : public testing::Test {
           *out_);
     return out_->tracks[0];
   }
-  const Track& found(bool stands = true) {
+  const Track& found(bool is_publishable = true) {
     followed().reason = Reason::none;
-    followed().stands = stands;
+    followed().is_publishable = is_publishable;
     (*fitted_)[0].tools[0].marker_mask = 7;
     return frame();
   }
-  const Track& few(bool stands) {
+  const Track& partial_frame(bool is_publishable) {
     followed().reason = Reason::too_few_markers;
-    followed().few_mask = 3;
-    followed().stands = stands;
+    followed().partial_mask = 3;
+    followed().is_publishable = is_publishable;
     return frame();
   }
   bool refused_ = false, restarted_ = false;
   int number_ = 0;
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
-  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
-      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
-  std::unique_ptr<graph::Parts<FollowedTools, k_tool_slices>> followed_ =
-      std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_partitions>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_partitions>>();
+  std::unique_ptr<graph::Parts<FollowedTools, k_tool_partitions>> followed_ =
+      std::make_unique<graph::Parts<FollowedTools, k_tool_partitions>>();
   std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>(),
                              out_ = std::make_unique<Estimates>();
   TrackTools node_;
@@ -57,27 +57,27 @@ class TrackToolsInTime : public testing::Test {
 TEST_F(TrackToolsInTime, MakesAPoseByFewMarkersTheNewestAndKeepsWhyThereAreNoMore) {
   (void)found();
   followed().estimate.pose.translation = {0.1, 0, 0.5};
-  const Track& track = few(true);
+  const Track& track = partial_frame(true);
   EXPECT_EQ(track.newest.time, Time{} + milliseconds(44));
   EXPECT_EQ(track.marker_mask, 3);
   EXPECT_EQ(track.reason, Reason::too_few_markers);
-  EXPECT_FALSE(track.seen_now) << "the whole frame is searched for the others";
+  EXPECT_FALSE(track.measured_now) << "the whole frame is searched for the others";
   const Vector3 middle = track.newest.pose * set_->items[0].middle_m();
   EXPECT_LT((middle - Vector3(0.1, 0, 0.5)).norm(), 1e-12);
 }
 
 TEST_F(TrackToolsInTime, EstimatesTheNoiseFromPosesAndFromNothingElse) {
   (*fitted_)[0].tools[0].residuals = {{9e-6, 1}, {0.04, 4}};
-  (void)few(true);
-  EXPECT_FALSE(out_->noise.known);
+  (void)partial_frame(true);
+  EXPECT_FALSE(out_->noise.has_residuals);
   for (int i = 0; i < 2000; ++i) (void)found();
   EXPECT_NEAR(out_->noise.range_sigma_m, 0.003, 1e-4);
   EXPECT_NEAR(out_->noise.pixel_sigma_px, 0.1, 1e-3);
-  const double freedom = out_->noise.sums.range.freedom;
+  const double freedom = out_->noise.sums.range.redundancy;
   refused_ = true;
   (void)found();
-  EXPECT_EQ(out_->noise.sums.range.freedom, freedom) << "a refused frame shows nothing";
-  EXPECT_TRUE(out_->noise.known) << "and what was known stays";
+  EXPECT_EQ(out_->noise.sums.range.redundancy, freedom) << "a refused frame shows nothing";
+  EXPECT_TRUE(out_->noise.has_residuals) << "and what was known stays";
 }
 
 // With so large a noise estimate every pose may be `imprecise`.
@@ -94,26 +94,26 @@ TEST_F(TrackToolsInTime, KeepsToTheDeclaredNoiseWhereItIsToldTo) {
   node_.estimate_noise = false;
   (*fitted_)[0].tools[0].residuals = {{9e-6, 1}, {0.04, 4}};
   for (int i = 0; i < 10; ++i) (void)found();
-  EXPECT_FALSE(out_->noise.known);
+  EXPECT_FALSE(out_->noise.has_residuals);
 }
 
 TEST_F(TrackToolsInTime, CountsItsToolsAndThoseThatWereFound) {
   (void)found();
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1}}));
-  (void)few(true);
+  (void)partial_frame(true);
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1}}));
 }
 
 TEST_F(TrackToolsInTime, LosesAToolWhosePoseByFewMarkersIsTooUnsure) {
   (void)found();
   for (int i = 0; i < 11; ++i) {
-    const Track& track = few(false);
+    const Track& track = partial_frame(false);
     ASSERT_TRUE(track.alive);
     EXPECT_EQ(track.newest.time, Time{} + milliseconds(22));
     EXPECT_EQ(track.motion.time, Time{} + milliseconds(22) * number_);
     EXPECT_EQ(track.marker_mask, 7);
   }
-  EXPECT_FALSE(few(false).alive) << "250 ms after the last that stood";
+  EXPECT_FALSE(partial_frame(false).alive) << "250 ms after the last that stood";
 }
 
 TEST_F(TrackToolsInTime, FollowsAnAmbiguousPoseWithoutGivingItOut) {
@@ -121,45 +121,45 @@ TEST_F(TrackToolsInTime, FollowsAnAmbiguousPoseWithoutGivingItOut) {
   fit.odds = 5;
   followed().ambiguous = true;
   const Track first = found(false);
-  EXPECT_TRUE(first.alive && first.doubted);
-  EXPECT_FALSE(first.seen_now);
+  EXPECT_TRUE(first.alive && first.unconfirmed);
+  EXPECT_FALSE(first.measured_now);
   EXPECT_EQ(first.reason, Reason::ambiguous);
   EXPECT_EQ(first.odds, 5) << "what the next frame's evidence adds to";
   fit.odds = 20;
   followed().ambiguous = false;
   const Track settled = found();
-  EXPECT_TRUE(settled.seen_now);
-  EXPECT_FALSE(settled.doubted);
+  EXPECT_TRUE(settled.measured_now);
+  EXPECT_FALSE(settled.unconfirmed);
   // A tool with a settled hypothesis is predicted through an ambiguous frame ...
   fit.odds = 5;
   followed().ambiguous = true;
   const Track again = found(false);
-  EXPECT_FALSE(again.doubted || again.seen_now);
+  EXPECT_FALSE(again.unconfirmed || again.measured_now);
   EXPECT_EQ(again.newest.time, settled.newest.time);
   // ... but not if the other hypothesis was chosen.
-  fit.turned = true;
-  EXPECT_TRUE(found(false).doubted);
+  fit.contradicts_track = true;
+  EXPECT_TRUE(found(false).unconfirmed);
 }
 
 TEST_F(TrackToolsInTime, ShowsTheFiltersPoseWhereTheMarkersAloneAreUnsure) {
   (*fitted_)[0].tools[0].T_camera_tool.translation = {0, 0, 0.6};
   followed().estimate.pose.translation = Vector3(0, 0, 0.5) + set_->items[0].middle_m();
   EXPECT_NEAR(found().T_camera_tool.translation.z(), 0.6, 1e-12);
-  followed().filtered = true;
+  followed().use_filter_pose = true;
   EXPECT_NEAR(found().T_camera_tool.translation.z(), 0.5, 1e-12);
-  EXPECT_TRUE(out_->tracks[0].filtered);
+  EXPECT_TRUE(out_->tracks[0].is_filter_pose);
 }
 
 TEST_F(TrackToolsInTime, CallsNoPoseMeasuredThatIsUnsureButGoesOnByIt) {
-  EXPECT_TRUE(found(false).doubted) << "a first pose that is imprecise";
-  EXPECT_FALSE(out_->tracks[0].seen_now);
+  EXPECT_TRUE(found(false).unconfirmed) << "a first pose that is imprecise";
+  EXPECT_FALSE(out_->tracks[0].measured_now);
   EXPECT_EQ(out_->tracks[0].reason, Reason::imprecise);
-  EXPECT_FALSE(found().doubted);
+  EXPECT_FALSE(found().unconfirmed);
   const Time sure = found().newest.time;
   followed().estimate.pose.translation.x() = 0.01;
   const Track& track = found(false);
   EXPECT_TRUE(track.alive);
-  EXPECT_FALSE(track.seen_now);
+  EXPECT_FALSE(track.measured_now);
   EXPECT_EQ(track.reason, Reason::imprecise);
   EXPECT_EQ(track.newest.time, sure);
   EXPECT_EQ(track.motion.pose.translation.x(), 0.01);
@@ -205,17 +205,17 @@ TEST(TrackTools, GivesWhatTheHeadsetItselfIsOffByBesideTheMotionsCovariance) {
   set.items[0].marker_count = 3;
   graph::Latest<ToolSet> tools;
   tools.set(set, 1, 0);
-  const auto fitted = std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
-  const auto followed = std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
+  const auto fitted = std::make_unique<graph::Parts<FittedTools, k_tool_partitions>>();
+  const auto followed = std::make_unique<graph::Parts<FollowedTools, k_tool_partitions>>();
   (*followed)[0].items[0].reason = Reason::none;
-  (*followed)[0].items[0].stands = true;
+  (*followed)[0].items[0].is_publishable = true;
   (*followed)[0].items[0].correlated_covariance(2, 2) = 7e-6;
   (*followed)[0].items[0].estimate.pose.translation = {1, 0, 0};
   (*fitted)[0].tools[0].systematic.calibration.diagonal() << 1e-6, 4e-6, 9e-6, 1e-10, 2e-10, 3e-10;
   Anchor anchor;
   anchor.now.head.valid = true;
   anchor.now.head.T_world_camera.rotation = Quaternion(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
-  anchor.now.lasting.diagonal() << Vector3::Constant(1e-6), Vector3::Constant(4e-6);
+  anchor.now.shared.diagonal() << Vector3::Constant(1e-6), Vector3::Constant(4e-6);
   const auto last = std::make_unique<Estimates>(), out = std::make_unique<Estimates>();
   glint::TrackTools node;
   node({}, anchor, tools, *fitted, *followed, graph::Previous<Estimates>(*last), *out);

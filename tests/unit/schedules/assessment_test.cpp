@@ -10,11 +10,11 @@ namespace {
 
 using test::k_ms;
 using test::k_us;
-using test::small_question;
+using test::small_input;
 
 TEST(Assessment, AddsEachStageOnceAndKeepsEstimatesApart) {
-  const Assessment found = assess(small_question());
-  ASSERT_TRUE(found.holds()) << found.fails.front();
+  const Assessment found = assess(small_input());
+  ASSERT_TRUE(found.holds()) << found.missed_deadlines.front();
   ASSERT_EQ(found.chains.size(), 2U);
   const Chain& to_can = found.chains[0];
   std::int64_t sum = 0, estimates = 0;
@@ -36,8 +36,8 @@ TEST(Assessment, AddsEachStageOnceAndKeepsEstimatesApart) {
 }
 
 TEST(Assessment, GivesReactionTimeAndDataAgeFromMidExposureToTheLastBit) {
-  const Question question = small_question();
-  const Assessment found = assess(question);
+  const AnalysisInput input = small_input();
+  const Assessment found = assess(input);
   const Chain& to_bus = found.chains[1];
   EXPECT_EQ(to_bus.stages[0].ns, 1 * k_ms);
   EXPECT_EQ(to_bus.stages[1].ns, 8 * k_ms);
@@ -51,58 +51,58 @@ TEST(Assessment, GivesReactionTimeAndDataAgeFromMidExposureToTheLastBit) {
 }
 
 TEST(Assessment, SaysWhichDeadlineIsMissedAndByHowMuch) {
-  Question question = small_question();
-  question.frame_to_can_deadline_ns = 3 * k_ms;
-  question.model.groups[1].deadline_ns = 40 * k_us;
-  const Assessment found = assess(question);
-  ASSERT_EQ(found.fails.size(), 2U);
-  EXPECT_EQ(found.fails[0], "group tick: bound 82.0 us, deadline 40.0 us");
-  EXPECT_EQ(found.fails[1].substr(0, 24), "chain frame_to_can: boun");
+  AnalysisInput input = small_input();
+  input.frame_to_can_deadline_ns = 3 * k_ms;
+  input.model.groups[1].deadline_ns = 40 * k_us;
+  const Assessment found = assess(input);
+  ASSERT_EQ(found.missed_deadlines.size(), 2U);
+  EXPECT_EQ(found.missed_deadlines[0], "group tick: bound 82.0 us, deadline 40.0 us");
+  EXPECT_EQ(found.missed_deadlines[1].substr(0, 24), "chain frame_to_can: boun");
 }
 
 TEST(Sensitivity, FindsTheFactorThatAnIndependentSearchFinds) {
-  Question question = small_question();
-  question.model.system = {};
-  question.model.groups[0].deadline_ns = 1 * k_ms;
+  AnalysisInput input = small_input();
+  input.model.system = {};
+  input.model.groups[0].deadline_ns = 1 * k_ms;
   // Frame group: 400 us of jitter and 50 of the tick. 600 - 50 us remain for 100 us of nodes.
-  const auto group = largest_factor(question, [](std::size_t g, std::size_t) { return g == 0; });
+  const auto group = largest_factor(input, [](std::size_t g, std::size_t) { return g == 0; });
   ASSERT_TRUE(group);
   EXPECT_NEAR(*group, 5.5, 0.001);
   EXPECT_NEAR(slack_percent(*group), 450, 0.1);
   // One node of 60 us alone: 600 - 50 - 40 us remain.
   const auto node =
-      largest_factor(question, [](std::size_t g, std::size_t n) { return g == 0 && n == 0; });
+      largest_factor(input, [](std::size_t g, std::size_t n) { return g == 0 && n == 0; });
   EXPECT_NEAR(*node, 510.0 / 60, 0.001);
   // All nodes: 600 / 150.
   const auto all = largest_factor(
-      question, [](std::size_t, std::size_t) { return true; }, true);
+      input, [](std::size_t, std::size_t) { return true; }, true);
   EXPECT_NEAR(*all, 4.0, 0.001);
   // The returned factor holds; a slightly larger one does not.
   for (const double factor : {*all, *all * 1.001}) {
-    Question scaled_question = question;
-    scaled_question.model = scaled(
-        question.model, factor, [](std::size_t, std::size_t) { return true; }, true);
-    EXPECT_EQ(assess(scaled_question).holds(), factor == *all);
+    AnalysisInput scaled_input = input;
+    scaled_input.model = scaled(
+        input.model, factor, [](std::size_t, std::size_t) { return true; }, true);
+    EXPECT_EQ(assess(scaled_input).holds(), factor == *all);
   }
 }
 
 TEST(Sensitivity, IsNegativeWhereADeadlineIsMissedAndNoneWhereNothingHelps) {
-  Question question = small_question();
-  question.model.system = {};
-  question.model.groups[1].deadline_ns = 40 * k_us;  // the tick needs 50
-  const auto factor = largest_factor(question, [](std::size_t, std::size_t) { return true; });
+  AnalysisInput input = small_input();
+  input.model.system = {};
+  input.model.groups[1].deadline_ns = 40 * k_us;  // the tick needs 50
+  const auto factor = largest_factor(input, [](std::size_t, std::size_t) { return true; });
   ASSERT_TRUE(factor);
   EXPECT_NEAR(slack_percent(*factor), -20, 0.1);
-  question.frame_to_can_deadline_ns = 1 * k_ms;  // sampling alone takes 4
-  EXPECT_FALSE(largest_factor(question, [](std::size_t, std::size_t) { return true; }));
+  input.frame_to_can_deadline_ns = 1 * k_ms;  // sampling alone takes 4
+  EXPECT_FALSE(largest_factor(input, [](std::size_t, std::size_t) { return true; }));
 }
 
 // Chain by brute force: frames and ticks have any phase, and each group takes its worst-case
 // response. No pose reaches the bus after the bound, and none is older than the maximum data age.
 TEST(Assessment, NoPhaseOfFramesAndTicksIsLaterThanTheChainsBounds) {
-  Question question = small_question();
-  question.model.system = {};
-  const Assessment found = assess(question);
+  AnalysisInput input = small_input();
+  input.model.system = {};
+  const Assessment found = assess(input);
   const std::int64_t frame_ns = *found.groups[0].response_ns - 400 * k_us;
   const std::int64_t tick_ns = *found.groups[1].response_ns;
   std::int64_t latest = 0, oldest = 0;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t k_us = 1'000, k_ms = 1'000'000;
 constexpr std::size_t k_frame = 0, k_tick = 1, k_background = 2;
 
-TaskGroup slices_of(std::int64_t slice_ns, std::int64_t period_ns) {
+TaskGroup background_group(std::int64_t slice_ns, std::int64_t period_ns) {
   TaskGroup group = staged_group({{"Slice", 1, slice_ns}});
   group.name = "background";
   group.resumable = true;
@@ -31,13 +31,13 @@ TaskModel three_groups(int cores, std::int64_t slice_ns = 300 * k_us,
                        std::int64_t period_ns = 100 * k_ms) {
   TaskModel model;
   model.cores = cores;
-  TaskGroup frame = like_the_tracker();
+  TaskGroup frame = tracker_like_group();
   frame.min_gap_ns = frame.deadline_ns = 22'222'222;
   TaskGroup tick = staged_group({{"PredictTools", 1, 20 * k_us}, {"PackCan", 1, 30 * k_us}});
   tick.name = "tick";
   tick.min_gap_ns = tick.deadline_ns = 4 * k_ms;
-  model.groups = {frame, tick, slices_of(slice_ns, period_ns)};
-  model.system.core_handover_ns = 400;
+  model.groups = {frame, tick, background_group(slice_ns, period_ns)};
+  model.system.inter_core_delay_ns = 400;
   return model;
 }
 
@@ -57,7 +57,7 @@ TEST(BackgroundPlan, IsOptimalForEachOfThreeGroupsOnOneCoreAndOnSeveral) {
     ASSERT_EQ(plan.groups.size(), 3U);
     for (const PlannedGroup& group : plan.groups) {
       EXPECT_TRUE(group.optimal) << group.name << " on " << cores;
-      EXPECT_EQ(group.makespan_ns, group.least_possible_ns);
+      EXPECT_EQ(group.makespan_ns, group.makespan_lower_bound_ns);
     }
   }
 }
@@ -113,7 +113,7 @@ TEST(BackgroundPlan, PutsSlicesOnTheCoreWhereTheTickDoesNotRun) {
     model.groups[k_frame].deadline_ns = frame_deadline;
     const Plan plan = synthesize(model);
     const auto found = group_responses(model, plan);
-    ASSERT_TRUE(found[k_frame].in_time() && found[k_tick].in_time());
+    ASSERT_TRUE(found[k_frame].meets_deadline() && found[k_tick].meets_deadline());
     EXPECT_NE(core_of(plan, k_background), core_of(plan, k_tick)) << frame_deadline;
     EXPECT_EQ(found[k_tick].blocking_ns, 0);
   }
@@ -141,15 +141,15 @@ TEST(BackgroundPlan, ThatHasNoRoomForItsSlicesIsRefused) {
 }
 
 TEST(BackgroundStages, HaveARowForTheSliceAndAddUpToTheSame) {
-  const auto question_with = [](std::int64_t slice_ns) {
-    Question question;
-    question.model = three_groups(1, slice_ns);
-    question.plan = synthesize(question.model);
-    question.frame_to_can_deadline_ns = question.age_deadline_ns = 250 * k_ms;
-    return question;
+  const auto input_with = [](std::int64_t slice_ns) {
+    AnalysisInput input;
+    input.model = three_groups(1, slice_ns);
+    input.plan = synthesize(input.model);
+    input.frame_to_can_deadline_ns = input.age_deadline_ns = 250 * k_ms;
+    return input;
   };
-  const Chain with = assess(question_with(300 * k_us)).chains.at(0);
-  Question without = question_with(300 * k_us);
+  const Chain with = assess(input_with(300 * k_us)).chains.at(0);
+  AnalysisInput without = input_with(300 * k_us);
   without.model.groups.pop_back();
   without.plan = synthesize(without.model);
   const Chain alone = assess(without).chains.at(0);
@@ -171,17 +171,17 @@ TEST(BackgroundStages, HaveARowForTheSliceAndAddUpToTheSame) {
 }
 
 TEST(BackgroundSlack, EndsWhereALongerSliceMakesAGroupLate) {
-  Question question;
-  question.model = three_groups(1);
-  question.plan = synthesize(question.model);
-  question.frame_to_can_deadline_ns = question.age_deadline_ns = 250 * k_ms;
-  const Grows slices = [](std::size_t group, std::size_t) { return group == k_background; };
-  const auto factor = largest_factor(question, slices);
+  AnalysisInput input;
+  input.model = three_groups(1);
+  input.plan = synthesize(input.model);
+  input.frame_to_can_deadline_ns = input.age_deadline_ns = 250 * k_ms;
+  const IsScaled slices = [](std::size_t group, std::size_t) { return group == k_background; };
+  const auto factor = largest_factor(input, slices);
   ASSERT_TRUE(factor);
   // A slice of 300 us may grow to the tick's 4 ms minus its own 50 us.
   EXPECT_NEAR(*factor, 3'950.0 / 300, 0.01);
-  question.model = scaled(question.model, *factor * 1.001, slices);
-  EXPECT_FALSE(assess(question).holds());
+  input.model = scaled(input.model, *factor * 1.001, slices);
+  EXPECT_FALSE(assess(input).holds());
 }
 
 TEST(BackgroundSlack, TakesASliceOfSeveralNodesForLongerWithAnyAndShorterOnlyWithAll) {
@@ -212,7 +212,7 @@ TEST(BackgroundResponse, OfNoGroupIsExceededInAThousandSimulatedSets) {
     };
     TaskModel model;
     model.groups = {staged_group({{"F", 1, up_to(30)}}), staged_group({{"T", 1, up_to(8)}}),
-                    slices_of(up_to(20), 150 + up_to(150))};
+                    background_group(up_to(20), 150 + up_to(150))};
     model.groups[k_frame].min_gap_ns = model.groups[k_frame].deadline_ns = 80 + up_to(40);
     model.groups[k_tick].name = "tick";
     model.groups[k_tick].min_gap_ns = model.groups[k_tick].deadline_ns = 20 + up_to(20);

@@ -79,7 +79,7 @@ TEST(BusLoad, NoClassicFrameIsLongerThanItsBound) {
 }
 
 // Worst case of bit stuffing: five equal bits, then four of the other value, and so on.
-Bits hardest(int count) {
+Bits worst_stuffing(int count) {
   Bits bits;
   bool value = false;
   int left = 5;
@@ -94,7 +94,7 @@ Bits hardest(int count) {
 
 TEST(BusLoad, CountsBothPhasesOfAnFdFrame) {
   const CanFrameBits bits = worst_case_bits({64, false, true, true});
-  const int stuffing = stuffing_of(hardest(17 + 5 + 512));
+  const int stuffing = stuffing_of(worst_stuffing(17 + 5 + 512));
   EXPECT_EQ(bits.nominal + bits.data, 17 + 5 + 512 + stuffing + 4 + 21 + 7 + 15);
   EXPECT_EQ(bits.nominal, 17 + 4 + 15);
   const CanFrameBits slow = worst_case_bits({64, false, true, false});
@@ -113,15 +113,16 @@ TEST(BusLoad, CountsEveryFieldOfFramesOfAnyLengthAndIdentifier) {
     for (const int length : {0, 1, 2, 7, 8}) {
       const int bits = classic + 8 * length;
       EXPECT_EQ(worst_case_bits({length, extended}).nominal,
-                bits + stuffing_of(hardest(bits)) + 13);
+                bits + stuffing_of(worst_stuffing(bits)) + 13);
     }
     for (const int length : {0, 8, 16, 20, 64}) {
       const int crc = 4 + (length <= 16 ? 17 : 21), fixed = length <= 16 ? 6 : 7;
       const CanFrameBits bits = worst_case_bits({length, extended, true, true});
       const int stuffed = arbitration + 5 + 8 * length;
-      EXPECT_EQ(bits.nominal, arbitration + stuffing_of(hardest(arbitration)) + 15) << length;
+      EXPECT_EQ(bits.nominal, arbitration + stuffing_of(worst_stuffing(arbitration)) + 15)
+          << length;
       EXPECT_EQ(bits.nominal + bits.data,
-                stuffed + stuffing_of(hardest(stuffed)) + crc + fixed + 15)
+                stuffed + stuffing_of(worst_stuffing(stuffed)) + crc + fixed + 15)
           << length;
     }
   }

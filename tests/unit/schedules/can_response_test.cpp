@@ -50,8 +50,9 @@ TEST(CanResponse, AFifoDelaysAnUrgentFrameByAllThatMayStandBeforeIt) {
   std::vector<CanMessage> messages = davis_2007();
   for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 20 * k_ms;
   messages[0].node = messages[1].node = messages[2].node = 7;
-  const auto by_priority = can_responses(messages, {.nominal = 125e3});
-  EXPECT_EQ(by_priority[0].response_ns, 2 * k_ms);  // one frame of any priority, then its own
+  const auto analyse_priority_queue = can_responses(messages, {.nominal = 125e3});
+  EXPECT_EQ(analyse_priority_queue[0].response_ns,
+            2 * k_ms);  // one frame of any priority, then its own
   for (CanMessage& message : messages) message.fifo = true;
   const auto queued = can_responses(messages, {.nominal = 125e3});
   EXPECT_EQ(queued[0].response_ns, 3 * k_ms);
@@ -260,8 +261,10 @@ TEST(CanResponse, OrdersIdentifiersAsArbitrationDoes) {
           message.shape.extended ? high << 18 | random() % 4 << 16 | random() % 3 : high;
     }
     const std::string a = on_the_bus(pair[0]), b = on_the_bus(pair[1]);
-    EXPECT_EQ(urgency_of(pair[0]) > urgency_of(pair[1]), a < b) << a << ' ' << b;
-    EXPECT_EQ(urgency_of(pair[0]) == urgency_of(pair[1]), a == b) << a << ' ' << b;
+    EXPECT_EQ(arbitration_priority(pair[0]) > arbitration_priority(pair[1]), a < b)
+        << a << ' ' << b;
+    EXPECT_EQ(arbitration_priority(pair[0]) == arbitration_priority(pair[1]), a == b)
+        << a << ' ' << b;
   }
 }
 
@@ -270,9 +273,9 @@ TEST(CanResponse, ShortIdentifiersWinAgainstLongOnesWithTheSameBeginning) {
   shorter.identifier = 0x123;
   longer.identifier = 0x123U << 18;
   longer.shape.extended = true;
-  EXPECT_GT(urgency_of(shorter), urgency_of(longer));
+  EXPECT_GT(arbitration_priority(shorter), arbitration_priority(longer));
   shorter.identifier = 0x124;
-  EXPECT_LT(urgency_of(shorter), urgency_of(longer));
+  EXPECT_LT(arbitration_priority(shorter), arbitration_priority(longer));
 }
 
 }  // namespace

@@ -40,8 +40,8 @@ std::vector<std::int64_t> simulate_bus(const std::vector<CanMessage>& messages,
       *next = std::max(*next, first[m] + number[m] * messages[m].period_ns + late(m, number[m]));
     }
   };
-  const auto more_urgent = [&](const Queued& a, const Queued& b) {
-    return urgency_of(messages[a.message]) > urgency_of(messages[b.message]);
+  const auto higher_priority = [&](const Queued& a, const Queued& b) {
+    return arbitration_priority(messages[a.message]) > arbitration_priority(messages[b.message]);
   };
 
   for (std::int64_t now = 0; now < until;) {
@@ -54,10 +54,10 @@ std::vector<std::int64_t> simulate_bus(const std::vector<CanMessage>& messages,
       if (!messages[offered->message].fifo) {
         // Highest priority; of equal identifiers the oldest.
         for (auto other = queue.begin(); other != queue.end(); ++other) {
-          if (more_urgent(*other, *offered)) offered = other;
+          if (higher_priority(*other, *offered)) offered = other;
         }
       }
-      if (winner != nullptr && !more_urgent(*offered, *offered_by_winner)) continue;
+      if (winner != nullptr && !higher_priority(*offered, *offered_by_winner)) continue;
       winner = &queue;
       offered_by_winner = offered;
     }

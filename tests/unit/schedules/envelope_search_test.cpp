@@ -62,7 +62,7 @@ TEST(EnvelopeSearch, EndsAtTheSameBoundByBlandsRule) {
     problem.stalls_max = -1;  // from the first pivot on
     const Envelope by_order = fit_envelope(problem);
     ASSERT_TRUE(by_gain && by_order) << trial;
-    EXPECT_EQ(judge(by_order, calls).above, 0) << trial;
+    EXPECT_EQ(validate(by_order, calls).above, 0) << trial;
     const double bound = bound_of(by_gain, weight);
     EXPECT_NEAR(bound_of(by_order, weight), bound, 1e-6 * (1 + bound)) << trial;
   }
@@ -73,7 +73,7 @@ TEST(EnvelopeSearch, CoversEveryCallWhereNoCountMatters) {
   const std::vector<ObservedCall> calls = random_calls(random, 60);
   const Envelope envelope = fit_envelope({calls, {}, k_loops, 0});
   ASSERT_TRUE(envelope) << name_of(envelope.fault);
-  EXPECT_EQ(judge(envelope, calls).above, 0);
+  EXPECT_EQ(validate(envelope, calls).above, 0);
   for (const double cost : envelope.cost) EXPECT_GE(cost, 0);
 }
 
@@ -151,10 +151,10 @@ TEST(CostOf, IsTheSumOfCountsTimesCosts) {
 
 TEST(Judge, CountsAnyCostWhereTheEnvelopeStatesNoneAsTwice) {
   const std::vector<ObservedCall> calls = {{{{1}}, 5}, {{{1}}, 0}};
-  const EnvelopeJudgement judged = judge(Envelope{}, calls);
-  EXPECT_EQ(judged.calls, 2);
-  EXPECT_EQ(judged.above, 1);
-  EXPECT_EQ(judged.worst_excess_percent, 100);
+  const EnvelopeValidation validation = validate(Envelope{}, calls);
+  EXPECT_EQ(validation.calls, 2);
+  EXPECT_EQ(validation.above, 1);
+  EXPECT_EQ(validation.worst_excess_percent, 100);
 }
 
 }  // namespace

@@ -65,8 +65,8 @@ TEST(Envelope, NoCallOfTheFitCostsMoreThanItSays) {
     for (ObservedCall& call : calls) call.cost *= 1 + static_cast<double>(random() % 1000) / 5000;
     const Envelope envelope = fit_envelope({calls, {1, 1000, 200'000}, 3, 0});
     ASSERT_TRUE(envelope) << name_of(envelope.fault);
-    const EnvelopeJudgement judged = judge(envelope, calls);
-    EXPECT_EQ(judged.above, 0) << judged.worst_excess_percent;
+    const EnvelopeValidation validation = validate(envelope, calls);
+    EXPECT_EQ(validation.above, 0) << validation.worst_excess_percent;
     for (std::size_t j = 0; j < 3; ++j) EXPECT_GE(envelope.cost[j], 0);
   }
 }
@@ -81,16 +81,17 @@ TEST(Envelope, NoGridPointWithinTheConstraintsHasASmallerBound) {
   const EnvelopeProblem problem{calls, {1, 20}, 2, 0};
   const Envelope envelope = fit_envelope(problem);
   ASSERT_TRUE(envelope);
-  double least = std::numeric_limits<double>::infinity();
+  double grid_min = std::numeric_limits<double>::infinity();
   for (double call = 0; call <= 200; call += 0.5) {
     for (double loop = 0; loop <= 20; loop += 0.05) {
       Envelope point;
       point.cost = {call, loop};
-      if (judge(point, calls).above == 0) least = std::min(least, bound_of(point, problem));
+      if (validate(point, calls).above == 0)
+        grid_min = std::min(grid_min, bound_of(point, problem));
     }
   }
-  EXPECT_LE(bound_of(envelope, problem), least + 1e-6);
-  EXPECT_GE(bound_of(envelope, problem), least - 2);  // the grid's step
+  EXPECT_LE(bound_of(envelope, problem), grid_min + 1e-6);
+  EXPECT_GE(bound_of(envelope, problem), grid_min - 2);  // the grid's step
 }
 
 TEST(Envelope, ABoundAtCountsThatWereSeenIsWhatWasSeenThere) {
@@ -109,7 +110,7 @@ TEST(Envelope, LoopsThatAlwaysRunEquallyOftenShareTheirCost) {
   const Envelope envelope = fit_envelope(problem);
   ASSERT_TRUE(envelope) << name_of(envelope.fault);
   EXPECT_NEAR(bound_of(envelope, problem), 509, 1e-6);
-  EXPECT_EQ(judge(envelope, calls).above, 0);
+  EXPECT_EQ(validate(envelope, calls).above, 0);
 }
 
 TEST(Envelope, EqualCallsEndWithinTheDeclaredPivots) {
@@ -148,10 +149,10 @@ TEST(Envelope, IsJudgedOnCallsThatItHasNotSeen) {
   envelope.cost = {100, 1};
   const std::vector<ObservedCall> unseen = {
       {{{1, 0}}, 100}, {{{1, 100}}, 220}, {{{1, 100}}, 100}, {{{1, 0}}, 101}};
-  const EnvelopeJudgement judged = judge(envelope, unseen);
-  EXPECT_EQ(judged.calls, 4);
-  EXPECT_EQ(judged.above, 2);
-  EXPECT_NEAR(judged.worst_excess_percent, 10, 1e-9);
+  const EnvelopeValidation validation = validate(envelope, unseen);
+  EXPECT_EQ(validation.calls, 4);
+  EXPECT_EQ(validation.above, 2);
+  EXPECT_NEAR(validation.worst_excess_percent, 10, 1e-9);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ ChainParts distinct_parts() {
       .bound_ns = 21, .blocking_ns = 22, .wake_up_ns = 23, .system_ns = 24, .writes_ns = 25};
   parts.first_write_ns = 8;
   parts.bus_ns = 90'000;
-  parts.bus_least_ns = 80'000;
+  parts.bus_min_ns = 80'000;
   parts.frame_to_can_deadline_ns = 1'111;
   parts.age_deadline_ns = 2'222;
   return parts;

@@ -30,25 +30,25 @@ TEST(NodeBounds, GiveEachCopyOfASplitTheSameBound) {
 }
 
 // Copy i processes every third tool, starting with tool i.
-struct UnevenSpots {
+struct UnequalPartitions {
   static constexpr std::array<std::string_view, 2> k_loops = {"call", "tools"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     return worst(limits, {0, 3});
   }
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
-                                                         graph::Slice slice) noexcept {
-    return {{1, (limits.tools - slice.index + slice.count - 1) / slice.count}};
+                                                         graph::Partition partition) noexcept {
+    return {{1, (limits.tools - partition.index + partition.count - 1) / partition.count}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return {}; }
-  void operator()(const toy::Picture& /*picture*/, graph::Slice /*slice*/,
+  void operator()(const toy::Picture& /*picture*/, graph::Partition /*partition*/,
                   toy::Spots& /*spots*/) noexcept {}
 };
 
 TEST(NodeBounds, GiveEachCopyItsOwnWhereTheNodeTellsThemApart) {
   using Split =
       graph::Graph<graph::Inputs<toy::Picture>, graph::Outputs<graph::Parts<toy::Spots, 3>>,
-                   graph::Split<UnevenSpots, 3>>;
-  const std::array<KernelCost, 1> costs = {{{"UnevenSpots", {"call", "tools"}, {0, 1'000}}}};
+                   graph::Split<UnequalPartitions, 3>>;
+  const std::array<KernelCost, 1> costs = {{{"UnequalPartitions", {"call", "tools"}, {0, 1'000}}}};
   const auto bounds = node_bounds<Split>({"toy", "any", "none", costs}, Limits{.tools = 5});
   EXPECT_EQ(bounds, (std::array<std::int64_t, 3>{2, 2, 1}));
 }

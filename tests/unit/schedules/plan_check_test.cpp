@@ -14,7 +14,7 @@ namespace {
 TaskModel small_model(int cores) {
   TaskModel model;
   model.cores = cores;
-  TaskGroup frame = like_the_tracker();
+  TaskGroup frame = tracker_like_group();
   frame.min_gap_ns = frame.deadline_ns = 22'222'222;
   TaskGroup tick = staged_group({{"PredictTools", 1, 20'000}, {"PackCan", 1, 30'000}});
   tick.name = "tick";
@@ -43,7 +43,7 @@ TEST(PlanCheck, FindsNothingWrongWithRandomPlansAndSomethingInEachSpoiltOne) {
     model.cores = 1 + i % 4;
     model.groups.push_back(random_group(random, 4 + i % 6, 30));
     model.groups[0].min_gap_ns = model.groups[0].deadline_ns = 1'000;
-    model.system.core_handover_ns = i % 3;
+    model.system.inter_core_delay_ns = i % 3;
     const Plan plan = synthesize(model, 5'000);
     ASSERT_TRUE(check_plan(plan, model).empty()) << check_plan(plan, model).front();
     Plan spoilt = plan;
@@ -71,7 +71,7 @@ TEST(PlanCheck, WantsDataToBeHandedOverBeforeItIsReadOnAnotherCore) {
   model.cores = 2;
   model.groups = {staged_group({{"A", 1, 100}, {"B", 2, 100}})};
   model.groups[0].min_gap_ns = model.groups[0].deadline_ns = 10'000;
-  model.system.core_handover_ns = 30;
+  model.system.inter_core_delay_ns = 30;
   Plan plan = synthesize(model);
   ASSERT_TRUE(check_plan(plan, model).empty());
   for (PlannedNode& node : plan.nodes) {
@@ -131,14 +131,14 @@ TEST(GroupResponse, IsNeverExceededBySimulatedActivationsOnSeveralCores) {
     urgent.min_gap_ns = 15 + std::int64_t(random() % 60);
     urgent.deadline_ns = urgent.min_gap_ns;
     model.groups.push_back(urgent);
-    model.system.core_handover_ns = i % 3;
+    model.system.inter_core_delay_ns = i % 3;
     const Plan plan = synthesize(model, 2'000);
     const auto bounds = group_responses(model, plan);
     if (!bounds[0].response_ns) continue;
 
     // Simulates each nanosecond. Both groups are first released at the same time.
     const auto orders = core_orders(plan, 0);
-    const int urgent_core = [&] {
+    const int higher_priority_core = [&] {
       for (const PlannedNode& node : plan.nodes) {
         if (node.group == 1) return node.core;
       }
@@ -159,7 +159,7 @@ TEST(GroupResponse, IsNeverExceededBySimulatedActivationsOnSeveralCores) {
     for (; done < std::int64_t(group.nodes.size()) && now < 1'000'000; ++now) {
       if (now % urgent.min_gap_ns == 0) urgent_left += urgent.nodes[0].bound_ns;
       for (std::size_t c = 0; c < orders.size(); ++c) {
-        if (int(c) == urgent_core && urgent_left > 0) {
+        if (int(c) == higher_priority_core && urgent_left > 0) {
           --urgent_left;
           continue;
         }
@@ -168,7 +168,8 @@ TEST(GroupResponse, IsNeverExceededBySimulatedActivationsOnSeveralCores) {
         bool there = true;
         for (const int b : group.nodes[n].after) {
           const auto before = std::size_t(b);
-          const std::int64_t handed = core_of[before] == int(c) ? 0 : model.system.core_handover_ns;
+          const std::int64_t handed =
+              core_of[before] == int(c) ? 0 : model.system.inter_core_delay_ns;
           there = there && end[before] >= 0 && end[before] + handed <= now;
         }
         if (!there || --left[n] > 0) continue;

@@ -23,7 +23,7 @@ TaskModel two_groups() {
   model.groups[1].name = "tick";
   model.groups[1].min_gap_ns = model.groups[1].deadline_ns = 1'000;
   model.groups[1].nodes = {{"T", 0, 1, 10, {}}};
-  model.system.core_handover_ns = 5;
+  model.system.inter_core_delay_ns = 5;
   return model;
 }
 

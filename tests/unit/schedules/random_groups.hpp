@@ -46,7 +46,7 @@ inline TaskGroup staged_group(const std::vector<Stage>& stages) {
   return group;
 }
 
-inline TaskGroup like_the_tracker() {
+inline TaskGroup tracker_like_group() {
   return staged_group({{"StampFrame", 1, 300},
                        {"CheckFrame", 1, 500},
                        {"PredictTracks", 1, 9'000},

@@ -36,12 +36,13 @@ std::vector<SimulatedTask> random_tasks(std::mt19937_64& random) {
 }
 
 std::optional<ResponseTime> bound_of(const std::vector<SimulatedTask>& tasks, std::size_t t) {
-  std::vector<Interference> urgent;
+  std::vector<Interference> higher_priority;
   for (std::size_t u = 0; u < t; ++u) {
-    urgent.push_back({tasks[u].cost, tasks[u].period, tasks[u].jitter});
+    higher_priority.push_back({tasks[u].cost, tasks[u].period, tasks[u].jitter});
   }
   const std::int64_t blocking = t + 1 < tasks.size() ? tasks.back().slice : 0;
-  return response_time({tasks[t].cost, tasks[t].period, tasks[t].jitter, blocking}, urgent);
+  return response_time({tasks[t].cost, tasks[t].period, tasks[t].jitter, blocking},
+                       higher_priority);
 }
 
 TEST(ResponseSimulation, NoResponseOfAThousandTaskSetsIsAboveItsBound) {

@@ -22,23 +22,23 @@ TEST(ResponseTime, OfBurnsAndWellingsThreeTasksAre3And6And20) {
 // Lehoczky 1990, set (26,70), (62,100): the first activation ends after 114, the fifth 118 after
 // its release; the busy period has seven activations.
 TEST(ResponseTime, OfLehoczkysSetIsWorstInTheFifthActivation) {
-  constexpr std::array<Interference, 1> k_urgent = {{{26, 70, 0}}};
-  const auto found = response_time({62, 100, 0, 0}, k_urgent);
+  constexpr std::array<Interference, 1> k_higher_priority = {{{26, 70, 0}}};
+  const auto found = response_time({62, 100, 0, 0}, k_higher_priority);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->response_ns, 118);
   EXPECT_EQ(found->activations, 7);
 }
 
 TEST(ResponseTime, AddsJitterAndBlocking) {
-  constexpr std::array<Interference, 1> k_urgent = {{{2, 10, 3}}};
+  constexpr std::array<Interference, 1> k_higher_priority = {{{2, 10, 3}}};
   // Own work 4, blocking 3, two releases of the other within 11 + 3.
-  EXPECT_EQ(response_time({4, 50, 5, 3}, k_urgent)->response_ns, 5 + 4 + 3 + 2 * 2);
+  EXPECT_EQ(response_time({4, 50, 5, 3}, k_higher_priority)->response_ns, 5 + 4 + 3 + 2 * 2);
 }
 
 // Not const: the compiler would evaluate the recurrence to its end, which takes ten seconds.
 TEST(ResponseTime, HasNoBoundAboveFullLoad) {
-  std::array<Interference, 1> urgent = {{{6, 10, 0}}};
-  EXPECT_FALSE(response_time({5, 10, 0, 0}, urgent));
+  std::array<Interference, 1> higher = {{{6, 10, 0}}};
+  EXPECT_FALSE(response_time({5, 10, 0, 0}, higher));
   std::array<Interference, 1> undeclared = {{{1, 0, 0}}};
   EXPECT_FALSE(response_time({5, 10, 0, 0}, undeclared));
 }
@@ -46,8 +46,8 @@ TEST(ResponseTime, HasNoBoundAboveFullLoad) {
 // Lehoczky's fifth activation ends 518 after the start of the busy period: 310 for five of its own
 // activations, 208 for eight of the higher-priority task's.
 TEST(ResponseTime, StatesWhatPreemptionTookOfTheWorstActivation) {
-  constexpr std::array<Interference, 1> k_urgent = {{{26, 70, 0}}};
-  EXPECT_EQ(response_time({62, 100, 0, 0}, k_urgent)->preempted_ns, 8 * 26);
+  constexpr std::array<Interference, 1> k_higher_priority = {{{26, 70, 0}}};
+  EXPECT_EQ(response_time({62, 100, 0, 0}, k_higher_priority)->preempted_ns, 8 * 26);
   EXPECT_EQ(response_time({4, 50, 5, 3}, {})->preempted_ns, 0) << "blocking is no preemption";
 }
 
@@ -85,9 +85,9 @@ TEST(BusyWindow, TakesAStepForEachLookAndEndsWithTheLast) {
 
 TEST(BusyWindow, CountsAnUrgentReleaseOnceItsJitterBringsItIn) {
   const auto window = [](std::int64_t jitter) {
-    const std::array<Interference, 1> urgent = {{{2, 10, jitter}}};
+    const std::array<Interference, 1> higher = {{{2, 10, jitter}}};
     int steps = 100;
-    return *busy_window(6, urgent, 1'000, 0, steps);
+    return *busy_window(6, higher, 1'000, 0, steps);
   };
   EXPECT_EQ(window(0), 8);
   EXPECT_EQ(window(2), 8);

@@ -38,13 +38,13 @@ TEST(Scaled, GrowsTheSystemsTimesOnlyWhereAskedAndNeverItsRate) {
   EXPECT_EQ(same.interrupt_ns, 103);
   EXPECT_EQ(same.interrupt_gap_ns, 107);
   EXPECT_EQ(same.can_write_ns, 109);
-  EXPECT_EQ(same.core_handover_ns, 113);
+  EXPECT_EQ(same.inter_core_delay_ns, 113);
   const SystemShare grown = scaled(two_groups(), 1.5, none, true).system;
   EXPECT_EQ(grown.wake_up_ns, 152);
   EXPECT_EQ(grown.interrupt_ns, 155);
   EXPECT_EQ(grown.interrupt_gap_ns, 107);
   EXPECT_EQ(grown.can_write_ns, 164);
-  EXPECT_EQ(grown.core_handover_ns, 170);
+  EXPECT_EQ(grown.inter_core_delay_ns, 170);
 }
 
 TEST(Scaled, ByOneChangesNothing) {

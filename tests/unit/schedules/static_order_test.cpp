@@ -106,20 +106,20 @@ TEST(Reach, IsWhateverNeedsANodeDirectlyOrNot) {
 }
 
 TEST(LeastBetween, IsTheBestNumberOfCoresEachOfWhichButOnePaysTwoHandOvers) {
-  EXPECT_EQ(least_between(0, 4, 3), 0);
-  EXPECT_EQ(least_between(30, 1, 0), 30);
-  EXPECT_EQ(least_between(31, 2, 0), 16) << "rounded up";
-  EXPECT_EQ(least_between(30, 3, 0), 10);
-  EXPECT_EQ(least_between(30, 3, 1), 12);   // 34 / 3
-  EXPECT_EQ(least_between(30, 3, 10), 24);  // 70 / 3
-  EXPECT_EQ(least_between(30, 2, 10), 25);
-  EXPECT_EQ(least_between(30, 3, 15), 30) << "one core";
+  EXPECT_EQ(time_between_min(0, 4, 3), 0);
+  EXPECT_EQ(time_between_min(30, 1, 0), 30);
+  EXPECT_EQ(time_between_min(31, 2, 0), 16) << "rounded up";
+  EXPECT_EQ(time_between_min(30, 3, 0), 10);
+  EXPECT_EQ(time_between_min(30, 3, 1), 12);   // 34 / 3
+  EXPECT_EQ(time_between_min(30, 3, 10), 24);  // 70 / 3
+  EXPECT_EQ(time_between_min(30, 2, 10), 25);
+  EXPECT_EQ(time_between_min(30, 3, 15), 30) << "one core";
 }
 
 TEST(Tails, AddWorkBetweenANodeAndALaterOneOnAllCores) {
   const TaskGroup fork = staged_group({{"A", 1, 10}, {"B", 3, 10}, {"C", 1, 10}});
-  const auto tails = [&](std::int64_t handover) {
-    return tails_of(fork, reach_of(fork), 2, handover);
+  const auto tails = [&](std::int64_t core_delay) {
+    return tails_of(fork, reach_of(fork), 2, core_delay);
   };
   EXPECT_EQ(tails(0), (Times{35, 20, 20, 20, 10}));   // 30 of the copies on two cores
   EXPECT_EQ(tails(5), (Times{40, 20, 20, 20, 10}));   // (30 + 10) / 2

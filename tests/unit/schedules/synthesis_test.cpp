@@ -68,7 +68,7 @@ TEST(Synthesis, PutsTheFirstNodeOnTheFirstCore) {
   EXPECT_EQ(core_orders(plan, 0), (CoreOrders{{0}, {1, 2}}));
   EXPECT_EQ(plan.groups[0].name, "frame");
   EXPECT_EQ(plan.groups[0].makespan_ns, 105);
-  EXPECT_EQ(plan.groups[0].least_possible_ns, 105);
+  EXPECT_EQ(plan.groups[0].makespan_lower_bound_ns, 105);
   EXPECT_TRUE(plan.groups[0].optimal);
   ASSERT_EQ(plan.nodes.size(), 3U);
   for (const PlannedNode& node : plan.nodes) {
@@ -124,14 +124,14 @@ TEST(Retimed, KeepsOrdersAndTakesTheModelsBounds) {
   model.groups = {staged_group({{"A", 1, 10}, {"B", 2, 20}, {"C", 1, 5}}),
                   one_node("tick", 7, 500)};
   model.groups[0].min_gap_ns = model.groups[0].deadline_ns = 1'000;
-  model.system.core_handover_ns = 3;
+  model.system.inter_core_delay_ns = 3;
   const Plan plan = synthesize(model);
   TaskModel slower = model;
-  slower.system.core_handover_ns = 4;
+  slower.system.inter_core_delay_ns = 4;
   for (TaskGroup& group : slower.groups) {
     for (TaskNode& node : group.nodes) node.bound_ns *= 2;
   }
-  const Plan found = retimed(plan, slower);
+  const Plan found = with_computed_times(plan, slower);
   EXPECT_TRUE(check_plan(found, slower).empty()) << check_plan(found, slower).front();
   for (int g = 0; g < 2; ++g) {
     EXPECT_EQ(core_orders(found, g), core_orders(plan, g));
@@ -140,7 +140,7 @@ TEST(Retimed, KeepsOrdersAndTakesTheModelsBounds) {
   EXPECT_EQ(plan.groups[0].makespan_ns, 10 + 3 + 20 + 5);
   EXPECT_EQ(found.groups[0].makespan_ns, 20 + 4 + 40 + 10);
   EXPECT_EQ(found.groups[1].makespan_ns, 14);
-  const Plan same = retimed(plan, model);
+  const Plan same = with_computed_times(plan, model);
   ASSERT_EQ(same.nodes.size(), plan.nodes.size());
   for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
     EXPECT_EQ(same.nodes[n].start_ns, plan.nodes[n].start_ns);

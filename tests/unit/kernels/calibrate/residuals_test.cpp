@@ -22,8 +22,8 @@ const Quaternion k_turn = from_rotation_vector({0.3, -0.7, 1.1});
 const Vector3 k_point(0.1, -0.2, 0.3);
 
 // A body with constant velocity and constant angular rate about z, around t = 1 s.
-MotionPiece even_piece() {
-  MotionPiece piece;
+MotionSegment even_piece() {
+  MotionSegment piece;
   for (int i = 0; i < 4; ++i) {
     piece.seconds[i] = 0.97 + 0.02 * i;
     piece.position_m[i] = k_point + Vector3(1, 2, -1) * (piece.seconds[i] - 1);
@@ -63,14 +63,14 @@ TEST(Residuals, SayHowManySigmasSomethingIsOff) {
 }
 
 TEST(Residuals, FollowAMotionBetweenItsSamples) {
-  const PoseOf<double> pose = blended_pose<double>(even_piece(), 1.004);
+  const PoseOf<double> pose = interpolated_pose<double>(even_piece(), 1.004);
   EXPECT_LT((pose.translation - (k_point + Vector3(1, 2, -1) * 0.004)).norm(), 1e-15);
   EXPECT_LT(pose.rotation.angularDistance(from_rotation_vector({0, 0, 0.004})), 8e-8);
   EXPECT_NEAR(pose.rotation.norm(), 1, 1e-15);
 }
 
 TEST(Residuals, FollowAParabolaThroughUnevenSamples) {
-  MotionPiece piece = even_piece();
+  MotionSegment piece = even_piece();
   const double seconds[] = {0.0, 0.3, 0.5, 1.1};
   const auto place = [](double t) { return Vector3(t * t, 1 - 2 * t * t, t); };
   for (int i = 0; i < 4; ++i) {
@@ -78,13 +78,13 @@ TEST(Residuals, FollowAParabolaThroughUnevenSamples) {
     piece.position_m[i] = place(seconds[i]);
   }
   for (const double t : {0.3, 0.37, 0.5}) {
-    EXPECT_LT((blended_pose<double>(piece, t).translation - place(t)).norm(), 1e-15) << t;
+    EXPECT_LT((interpolated_pose<double>(piece, t).translation - place(t)).norm(), 1e-15) << t;
   }
 }
 
 TEST(Residuals, AlignTwoTrackersThroughFrameLeverArmAndOffset) {
   const PoseOf<double> x{k_turn, {1, 0, 2}}, y{k_turn.conjugate(), {0, 0.1, 0}};
-  const PoseOf<double> seen = blended_pose<double>(even_piece(), 1.002);
+  const PoseOf<double> seen = interpolated_pose<double>(even_piece(), 1.002);
   const Pose body{seen.rotation, seen.translation};
   const Pose T_x{x.rotation, x.translation}, T_y{y.rotation, y.translation};
   AlignSample sample{0.9, T_x.inverse() * body * T_y.inverse(), even_piece(), 0.001, 0.01};
@@ -115,7 +115,7 @@ TEST(Residuals, StateARangeAsASensorWithABiasDoes) {
   DepthSample sample;
   sample.marker_m = k_point;
   sample.centre_behind_m = 0.006;
-  sample.dimness = 0.5;
+  sample.inverse_signal = 0.5;
   sample.sigma_x_px = 0.1;
   sample.sigma_y_px = 0.2;
   sample.sigma_range_m = 0.002;
@@ -156,7 +156,7 @@ TEST(Residuals, AreModelLessMeasurementInSigmasAlongEachAxis) {
 
 TEST(Residuals, AlignARotationByItsSigmaWhicheverOfItsQuaternionsStandsForIt) {
   const PoseOf<double> x{k_turn, {1, 0, 2}}, y{from_rotation_vector({0.2, 0.1, -0.4}), {0, 0.1, 0}};
-  const PoseOf<double> seen = blended_pose<double>(even_piece(), 1.002);
+  const PoseOf<double> seen = interpolated_pose<double>(even_piece(), 1.002);
   const Quaternion off = from_rotation_vector({0.01, -0.02, 0.03});
   const Vector3 shift(0.003, -0.002, 0.001);
   // The reference's orientation differs from the body's by `off`, in the body's frame.
@@ -205,17 +205,17 @@ TEST(Residuals, ProjectAsTheBrownLensDoesAndMissByAPixelsDistance) {
 
 TEST(Residuals, StayFiniteAtTheirWorst) {
   // No translation, no rotation, all samples at one position.
-  MotionPiece piece = even_piece();
+  MotionSegment piece = even_piece();
   for (Vector3& position : piece.position_m) position.setZero();
   piece.rotation[0] = piece.rotation[1] = Quaternion::Identity();
-  const PoseOf<double> pose = blended_pose<double>(piece, 5.0);  // far outside its samples
+  const PoseOf<double> pose = interpolated_pose<double>(piece, 5.0);  // far outside its samples
   EXPECT_TRUE(pose.translation.allFinite());
   EXPECT_TRUE(pose.rotation.coeffs().allFinite());
   EXPECT_TRUE(pivot_residual<double>({}, Quaternion(0, 1, 0, 0), Vector3::Zero(), Vector3::Zero())
                   .rotation.allFinite());
 }
 
-std::uint64_t mixed(std::uint64_t hash, const Vector3& v) {
+std::uint64_t fnv1a_of(std::uint64_t hash, const Vector3& v) {
   for (int axis = 0; axis < 3; ++axis) {
     hash = (hash ^ std::bit_cast<std::uint64_t>(v[axis])) * 0x100000001b3u;
   }
@@ -229,12 +229,12 @@ TEST(Residuals, KeepTheirBits) {
     const Quaternion q = from_rotation_vector(v);
     const PivotResidual<double> pivot =
         pivot_residual<double>({q, v, 0.01, 0.002}, k_turn, v, k_point);
-    hash = mixed(mixed(hash, pivot.position), pivot.rotation);
-    hash = mixed(hash, axis_residual<double>(q, v, k_point));
-    hash = mixed(hash, marker_residual<double>(v, 0.003, q, k_point, v));
+    hash = fnv1a_of(fnv1a_of(hash, pivot.position), pivot.rotation);
+    hash = fnv1a_of(hash, axis_residual<double>(q, v, k_point));
+    hash = fnv1a_of(hash, marker_residual<double>(v, 0.003, q, k_point, v));
     const AlignResidual<double> align = align_residual<double>(
         {0.9, {q, v}, even_piece(), 0.01, 0.02}, {k_turn, v}, {q, k_point}, 0.1 + 1e-5 * i);
-    hash = mixed(mixed(hash, align.position), align.rotation);
+    hash = fnv1a_of(fnv1a_of(hash, align.position), align.rotation);
   }
   EXPECT_EQ(hash, 935719419659854628u);  // g++ -O3, clang++ -O1 and -O3
 }

@@ -82,7 +82,8 @@ inline std::vector<Point> random_points(int count, float half, std::uint64_t see
 }
 
 // Noisy grid of side x side points on a gently curved surface; normals are near +z.
-inline std::vector<Point> sheet_points(int side, float spacing, float noise, std::uint64_t seed) {
+inline std::vector<Point> curved_surface_points(int side, float spacing, float noise,
+                                                std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> shift(-1, 1);
   std::vector<Point> out;

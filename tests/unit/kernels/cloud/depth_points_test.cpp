@@ -16,7 +16,7 @@ CameraModel small_pinhole() {
 
 std::vector<Point> points_of(const std::vector<float>& depth, const DepthPointSettings& settings,
                              const Pose& pose, int slice, int room, int& dropped) {
-  const DepthPicture picture{8, 6, depth};
+  const DepthImageView picture{8, 6, depth};
   TestCloud cloud(room);
   for (int at = 0; at < pixels_of(picture, settings.stride);) {
     at = add_depth_points(picture, small_pinhole(), pose, settings, at, slice, cloud.points,
@@ -125,7 +125,7 @@ TEST(DepthPoints, LeaveOutPixelsWithoutARay) {
   camera.cx = 3.5;
   TestCloud cloud(48);
   int dropped = 0;
-  const DepthPicture picture{8, 6, depth};
+  const DepthImageView picture{8, 6, depth};
   EXPECT_EQ(add_depth_points(picture, camera, {}, {}, 0, 100, cloud.points, dropped), 48);
   EXPECT_EQ(cloud.points.count, 6);  // the column of the optical axis
   for (const Point& point : cloud.all()) EXPECT_EQ(point[0], 0);

@@ -9,13 +9,13 @@ constexpr float k_radius = 0.03f;
 
 SurfacePoint surface_of(const std::vector<Point>& relative, std::vector<float> weights = {}) {
   weights.resize(relative.size(), 1);
-  weights.resize(relative.size() + k_four_spare, 3);
+  weights.resize(relative.size() + k_four_padding, 3);
   std::array<std::vector<float>, 3> columns;
   for (const Point& p : relative) {
     for (std::size_t i = 0; i < 3; ++i) columns[i].push_back(p[i]);
   }
   // The padding entries must not count as neighbours.
-  for (auto& column : columns) column.resize(relative.size() + k_four_spare, 0.02f);
+  for (auto& column : columns) column.resize(relative.size() + k_four_padding, 0.02f);
   // Entries behind the padding are not read.
   for (auto& column : columns) column.resize(column.size() + 4, k_not_a_number);
   weights.resize(weights.size() + 4, k_not_a_number);
@@ -39,8 +39,9 @@ TEST(LocalSurface, IsThatOfATextbookInDouble) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const std::vector<Point> near = noisy_patch(12 + static_cast<int>(seed % 40), seed);
     const SurfacePoint fast = surface_of(near);
-    const PlainSurface plain = plain_surface({0, 0, 0}, near, static_cast<double>(k_radius));
-    ASSERT_TRUE(fast.curved);
+    const ReferenceSurface plain =
+        reference_surface({0, 0, 0}, near, static_cast<double>(k_radius));
+    ASSERT_TRUE(fast.on_polynomial);
     ASSERT_LT((fast.offset_m - plain.point).norm(), 2e-6) << seed;
     ASSERT_GT(std::abs(fast.normal.dot(plain.normal)), 1 - 1e-7) << seed;
     ASSERT_GE(fast.normal.z(), 0);
@@ -90,7 +91,7 @@ TEST(LocalSurface, LiesOnASheetOfOrderTwoThatAllNeighboursLieOn) {
     }
   }
   const SurfacePoint found = surface_of(near);
-  EXPECT_TRUE(found.curved);
+  EXPECT_TRUE(found.on_polynomial);
   EXPECT_LT(found.offset_m.norm(), 1e-7);
   EXPECT_GT(found.normal.z(), 1 - 1e-9);
 }
@@ -98,14 +99,14 @@ TEST(LocalSurface, LiesOnASheetOfOrderTwoThatAllNeighboursLieOn) {
 TEST(LocalSurface, IsThePlaneForFewNeighboursAndForThoseOnALineOrInOnePlace) {
   const std::vector<Point> five{
       {0, 0, 0.01f}, {0.01f, 0, 0}, {-0.01f, 0, 0}, {0, 0.01f, 0}, {0, -0.01f, 0}};
-  EXPECT_FALSE(surface_of(five).curved);
+  EXPECT_FALSE(surface_of(five).on_polynomial);
   EXPECT_NEAR(surface_of(five).offset_m.z(), 0.002, 1e-8);
   std::vector<Point> line;
   for (int i = -5; i <= 5; ++i) line.push_back({0.002f * static_cast<float>(i), 0, 0});
-  EXPECT_FALSE(surface_of(line).curved);
+  EXPECT_FALSE(surface_of(line).on_polynomial);
   EXPECT_LT(surface_of(line).offset_m.norm(), 1e-8);
   const std::vector<Point> place(20, Point{0, 0, 0});
-  EXPECT_FALSE(surface_of(place).curved);
+  EXPECT_FALSE(surface_of(place).on_polynomial);
   EXPECT_EQ(surface_of(place).offset_m.norm(), 0);
   EXPECT_NEAR(surface_of(place).normal.norm(), 1, 1e-12);
 }
@@ -119,7 +120,7 @@ TEST(LocalSurface, IsThePlaneWhereTheSheetLiesFurtherAwayThanTheRadius) {
       rings.push_back({0.03f * side * x, 0.03f * side * y, 0});
     }
   }
-  EXPECT_FALSE(surface_of(rings).curved);
+  EXPECT_FALSE(surface_of(rings).on_polynomial);
   EXPECT_NEAR(surface_of(rings).offset_m.z(), -0.01, 1e-6);
 }
 
@@ -153,7 +154,7 @@ TEST(LocalSurface, WeighsNeighboursByTheExponentialOfTheirSquaredDistance) {
     const double a = std::exp(-(first - plane) * (first - plane));
     const double b = std::exp(-(second - plane) * (second - plane));
     const SurfacePoint found = surface_of(near);
-    ASSERT_TRUE(found.curved);
+    ASSERT_TRUE(found.on_polynomial);
     EXPECT_NEAR(found.offset_m.z(), r * (a * first + b * second) / (a + b), 5e-8)
         << first << ' ' << second;
     EXPECT_LT(found.offset_m.head<2>().norm(), 1e-7);
@@ -168,9 +169,9 @@ TEST(LocalSurface, IsCurvedForAsManyNeighboursAsTheSheetHasCoefficientsAndForNoF
   for (int round = 0; round < 3'000; ++round) {
     std::vector<Point> near{{0, 0, 0}};
     for (int i = 0; i < 4; ++i) near.push_back({side(random), side(random), side(random)});
-    ASSERT_FALSE(surface_of(near).curved) << round;
+    ASSERT_FALSE(surface_of(near).on_polynomial) << round;
     near.push_back({side(random), side(random), side(random)});
-    curved += surface_of(near).curved ? 1 : 0;
+    curved += surface_of(near).on_polynomial ? 1 : 0;
   }
   EXPECT_GT(curved, 1'000);
 }

@@ -9,8 +9,8 @@
 namespace glint::map_slices_test {
 namespace {
 
-using mapped_wall::ByThemselves;
 using mapped_wall::Picture;
+using mapped_wall::SeparateKernels;
 using mapped_wall::small_settings;
 using mapped_wall::TestMap;
 using mapped_wall::wall;
@@ -43,9 +43,9 @@ TEST(MapSliceSteps, OfPixelsAddUpAndSoDoThoseOfWhatIsLeftOut) {
   EXPECT_GT(capsule, 0);
   for (const int width : {1, 3, 8, 9}) {
     const int looked_at = std::min(width, k_map_pixels_at_once);
-    for (const int count : {0, 1, 5, k_left_out_max, k_left_out_max + 1}) {
+    for (const int count : {0, 1, 5, k_exclusion_capsules_max, k_exclusion_capsules_max + 1}) {
       EXPECT_EQ(steps_of_row(width, 0, static_cast<std::size_t>(count)),
-                call + looked_at * (pixel + std::min(count, k_left_out_max) * capsule))
+                call + looked_at * (pixel + std::min(count, k_exclusion_capsules_max) * capsule))
           << width << ' ' << count;
     }
   }
@@ -79,33 +79,35 @@ TEST(MapSliceSteps, OfVoxelsAreThoseOfTheSlotsLookedAt) {
 
 TEST(MapSliceSteps, OfEachStageAreItsKernelsOfEachCallAndOfBeginningTheNext) {
   const int call = call_steps();
-  const ByThemselves alone(wall());
+  const SeparateKernels alone(wall());
   TestMap test(small_settings(), 1);
   const Picture picture = wall();
   ASSERT_TRUE(test.map.look(picture.view()));
-  std::map<Stage, ByThemselves::Taken> taken;
+  std::map<Stage, SeparateKernels::StageCost> cost_of_stage;
   while (!test.map.idle()) {
-    ByThemselves::Taken& of_stage = taken[test.map.stage()];
+    SeparateKernels::StageCost& of_stage = cost_of_stage[test.map.stage()];
     of_stage.steps += test.map.step(1);
     ++of_stage.calls;
   }
-  const int begin = taken[Stage::outliers].steps - alone.taken.at(Stage::outliers).steps -
-                    taken[Stage::outliers].calls * call;
+  const int begin = cost_of_stage[Stage::outliers].steps -
+                    alone.cost_of_stage.at(Stage::outliers).steps -
+                    cost_of_stage[Stage::outliers].calls * call;
   EXPECT_GT(begin, 0);
-  for (const auto& [stage, kernel] : alone.taken) {
-    EXPECT_EQ(taken[stage].calls, kernel.calls) << static_cast<int>(stage);
-    EXPECT_EQ(taken[stage].steps, kernel.steps + kernel.calls * call + begin)
+  for (const auto& [stage, kernel] : alone.cost_of_stage) {
+    EXPECT_EQ(cost_of_stage[stage].calls, kernel.calls) << static_cast<int>(stage);
+    EXPECT_EQ(cost_of_stage[stage].steps, kernel.steps + kernel.calls * call + begin)
         << static_cast<int>(stage);
   }
   const int pixels = 40 * 30, probe = steps_of_row(1, 1.005f) - steps_of_row(1);
-  EXPECT_EQ(taken[Stage::points].calls, pixels / k_map_pixels_at_once);
-  EXPECT_EQ(taken[Stage::points].steps, taken[Stage::points].calls * call + pixels * pixel_steps() +
-                                            static_cast<int>(alone.voxels.probes()) * probe);
+  EXPECT_EQ(cost_of_stage[Stage::points].calls, pixels / k_map_pixels_at_once);
+  EXPECT_EQ(cost_of_stage[Stage::points].steps,
+            cost_of_stage[Stage::points].calls * call + pixels * pixel_steps() +
+                static_cast<int>(alone.voxels.probes()) * probe);
   // Each call processes one voxel or point; all calls take the same number of steps.
-  EXPECT_EQ(taken[Stage::voxels].calls, alone.voxels.count());
-  EXPECT_EQ(taken[Stage::voxels].steps % alone.voxels.count(), 0);
-  EXPECT_EQ(taken[Stage::snap].calls, alone.smoothed.points.count);
-  EXPECT_EQ(taken[Stage::snap].steps % alone.smoothed.points.count, 0);
+  EXPECT_EQ(cost_of_stage[Stage::voxels].calls, alone.voxels.count());
+  EXPECT_EQ(cost_of_stage[Stage::voxels].steps % alone.voxels.count(), 0);
+  EXPECT_EQ(cost_of_stage[Stage::snap].calls, alone.smoothed.points.count);
+  EXPECT_EQ(cost_of_stage[Stage::snap].steps % alone.smoothed.points.count, 0);
 }
 
 // A slice processes as many items as its steps allow; one more voxel needs its full step count.
@@ -126,7 +128,7 @@ TEST(MapSliceSteps, OfVoxelsAndPointsSufficeForAsMany) {
       EXPECT_EQ(at_stage(stage)->map.step(items * each), call + items * each);
       EXPECT_EQ(at_stage(stage)->map.step(items * each + each - 1), call + items * each);
     }
-    const ByThemselves alone(picture);
+    const SeparateKernels alone(picture);
     const int all = stage == Stage::voxels ? alone.voxels.count() : alone.smoothed.points.count;
     const auto test = at_stage(stage);
     EXPECT_EQ(test->map.step(all * each), call + all * each);

@@ -4,15 +4,15 @@
 namespace glint::map_state_test {
 namespace {
 
-using mapped_wall::ByThemselves;
 using mapped_wall::Picture;
+using mapped_wall::SeparateKernels;
 using mapped_wall::small_settings;
 using mapped_wall::TestMap;
 using mapped_wall::wall;
 
 TEST(MapTotals, AreThoseOfTheKernelsByThemselves) {
   const Picture picture = wall();
-  const ByThemselves alone(picture);
+  const SeparateKernels alone(picture);
   TestMap test(small_settings(), 1);
   ASSERT_TRUE(test.map.look(picture.view()));
   test.run();
@@ -80,7 +80,7 @@ TEST(MapTotals, CountWhatIsBeyondEitherGridAndWhatHasNoVoxelLeft) {
 }
 
 TEST(MapTotals, CountWhatIsLeftOutByTheFirstCapsulesAlone) {
-  for (const int before : {0, k_left_out_max - 1, k_left_out_max}) {
+  for (const int before : {0, k_exclusion_capsules_max - 1, k_exclusion_capsules_max}) {
     TestMap test;
     Picture row(10, 1, 1.0f);
     row.left_out.assign(static_cast<std::size_t>(before),
@@ -88,7 +88,7 @@ TEST(MapTotals, CountWhatIsLeftOutByTheFirstCapsulesAlone) {
     row.left_out.push_back({Vector3(-9, 0, 1), Vector3(-0.15, 0, 1), 0.147});  // most of the row
     ASSERT_TRUE(test.map.look(row.view()));
     test.run();
-    const bool counts = before < k_left_out_max;
+    const bool counts = before < k_exclusion_capsules_max;
     EXPECT_EQ(test.map.totals().measured + test.map.totals().left_out, 10);
     EXPECT_EQ(test.map.totals().left_out > 0, counts) << before;
     EXPECT_LT(test.map.totals().left_out, 10);
@@ -105,7 +105,7 @@ TEST(MapState, PreparedAnewIsThatOfANewMap) {
     }
     EXPECT_EQ(used.map.totals().maps, 1);
     EXPECT_GT(used.map.map().count, 0);
-    used.map.make_map();
+    used.map.start_map();
     (void)used.map.step(steps);
     used.prepare(small_settings(), 2);
     EXPECT_TRUE(used.map.idle());
@@ -113,7 +113,7 @@ TEST(MapState, PreparedAnewIsThatOfANewMap) {
     EXPECT_EQ(used.map.totals().maps, 0);
     EXPECT_EQ(used.map.totals().pictures, 0);
     EXPECT_EQ(used.map.totals().measured, 0);
-    used.map.make_map();
+    used.map.start_map();
     EXPECT_TRUE(used.map.idle()) << "there is no picture yet";
     for (TestMap* test : {&used, &fresh}) {
       for (int i = 0; i < 2; ++i) {
@@ -162,7 +162,7 @@ TEST(MapState, TakesUpWholePicturesAlone) {
   const std::vector<float> depth(6, 0.0f);
   const auto takes = [&](int width, int height, std::size_t pixels) {
     TestMap test;
-    MapPicture picture;
+    MapImage picture;
     picture.picture = {width, height, std::span(depth).first(pixels)};
     const bool taken = test.map.look(picture);
     EXPECT_EQ(test.map.idle(), !taken);
@@ -176,7 +176,7 @@ TEST(MapState, TakesUpWholePicturesAlone) {
   EXPECT_FALSE(takes(5, 0, 0));
   EXPECT_FALSE(takes(-1, -1, 1));
   MapSlices unprepared;
-  MapPicture picture;
+  MapImage picture;
   picture.picture = {3, 2, depth};
   EXPECT_FALSE(unprepared.look(picture));
 }
@@ -197,7 +197,8 @@ TEST(MapState, AnswersTheSettingsByTheirLimits) {
   EXPECT_EQ(bytes_of([](S& s) { s.depth.stride = 2; }), whole);
   EXPECT_EQ(bytes_of([](S& s) { s.smoothing.candidates_max = 0; }), 0u);
   EXPECT_GT(bytes_of([](S& s) { s.smoothing.candidates_max = 1; }), 0u);
-  EXPECT_EQ(bytes_of([](S& s) { s.smoothing.candidates_max = k_map_smoothed_over_max + 1; }), 0u);
+  EXPECT_EQ(bytes_of([](S& s) { s.smoothing.candidates_max = k_map_smoothing_candidates_max + 1; }),
+            0u);
   EXPECT_EQ(bytes_of([](S& s) { s.outliers.candidates_max = k_map_candidates_max + 1; }), 0u);
   EXPECT_EQ(bytes_of([](S& s) { s.support.candidates_max = k_map_candidates_max + 1; }), 0u);
 }
@@ -217,18 +218,18 @@ TEST(MapState, TakesTheMemoryThatItStatesAndRefusesLess) {
 TEST(MapState, InSlicesHasNoMoreCandidatesThanASliceMayLookAt) {
   MapSettings settings;
   settings.outliers.candidates_max = k_map_candidates_max - 1;
-  settings.smoothing.candidates_max = k_map_smoothed_over_max - 2;
+  settings.smoothing.candidates_max = k_map_smoothing_candidates_max - 2;
   settings.support.candidates_max = k_map_candidates_max - 3;
-  const MapSettings fewer = in_slices(settings);
+  const MapSettings fewer = limited_for_slices(settings);
   EXPECT_EQ(fewer.outliers.candidates_max, k_map_candidates_max - 1);
-  EXPECT_EQ(fewer.smoothing.candidates_max, k_map_smoothed_over_max - 2);
+  EXPECT_EQ(fewer.smoothing.candidates_max, k_map_smoothing_candidates_max - 2);
   EXPECT_EQ(fewer.support.candidates_max, k_map_candidates_max - 3);
   settings.outliers.candidates_max = k_map_candidates_max + 1;
-  settings.smoothing.candidates_max = k_map_smoothed_over_max + 1;
+  settings.smoothing.candidates_max = k_map_smoothing_candidates_max + 1;
   settings.support.candidates_max = k_map_candidates_max + 1;
-  const MapSettings most = in_slices(settings);
+  const MapSettings most = limited_for_slices(settings);
   EXPECT_EQ(most.outliers.candidates_max, k_map_candidates_max);
-  EXPECT_EQ(most.smoothing.candidates_max, k_map_smoothed_over_max);
+  EXPECT_EQ(most.smoothing.candidates_max, k_map_smoothing_candidates_max);
   EXPECT_EQ(most.support.candidates_max, k_map_candidates_max);
 }
 

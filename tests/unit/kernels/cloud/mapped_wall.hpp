@@ -9,24 +9,24 @@
 
 namespace glint::mapped_wall {
 
-inline constexpr int k_never = 1'000'000;  // images a map: makes no map
+inline constexpr int k_no_map = 1'000'000;  // images a map: makes no map
 
 inline MapSettings small_settings() {
   MapSettings settings;
   settings.voxels_max = 2'000;
   settings.planes.points_min = 100;
-  settings.support.part_min = 1;
-  return in_slices(settings);
+  settings.support.support_share_min = 1;
+  return limited_for_slices(settings);
 }
 
 struct TestMap {
-  explicit TestMap(const MapSettings& settings = small_settings(), int pictures_a_map = k_never) {
-    prepare(settings, pictures_a_map);
+  explicit TestMap(const MapSettings& settings = small_settings(), int images_per_map = k_no_map) {
+    prepare(settings, images_per_map);
   }
-  void prepare(const MapSettings& settings, int pictures_a_map) {
+  void prepare(const MapSettings& settings, int images_per_map) {
     memory.assign(MapSlices::bytes(settings), std::byte{0});
     Arena arena(memory);
-    EXPECT_EQ(map.prepare(settings, pictures_a_map, arena), Reason::none);
+    EXPECT_EQ(map.prepare(settings, images_per_map, arena), Reason::none);
   }
   void run(int steps = 50'000) {
     while (!map.idle()) (void)map.step(steps);
@@ -40,14 +40,14 @@ struct Picture {
   std::vector<float> depth_m;
   CameraModel camera;
   Pose T_world_camera;
-  std::vector<LeftOut> left_out;
+  std::vector<ExclusionCapsule> left_out;
 
   Picture(int of_width, int of_height, float depth) : width(of_width), height(of_height) {
     depth_m.assign(static_cast<std::size_t>(width * height), depth);
     camera.width = width, camera.height = height;
     camera.fx = camera.fy = 100, camera.cx = 20, camera.cy = 15;
   }
-  [[nodiscard]] MapPicture view() const {
+  [[nodiscard]] MapImage view() const {
     return {{width, height, depth_m}, camera, T_world_camera, left_out};
   }
 };
@@ -64,8 +64,8 @@ inline Picture wall() {
 }
 
 // Outputs and step counts of the kernels run separately, each call with a limit of one step.
-struct ByThemselves {
-  struct Taken {
+struct SeparateKernels {
+  struct StageCost {
     int calls = 0, steps = 0;
   };
   MapSettings settings = small_settings();
@@ -76,9 +76,9 @@ struct ByThemselves {
   MovingLeastSquares smoothing;
   PlaneSearch planes;
   PlaneSupport support;
-  std::map<MapSlices::Stage, Taken> taken;
+  std::map<MapSlices::Stage, StageCost> cost_of_stage;
 
-  explicit ByThemselves(const Picture& picture)
+  explicit SeparateKernels(const Picture& picture)
       : memory(MapSlices::bytes(settings)),
         points(2'000),
         voxel_points(2'000),
@@ -114,7 +114,7 @@ struct ByThemselves {
   }
   template <class Step, class Kernel>
   void run(MapSlices::Stage stage, Step step, const Kernel& kernel) {
-    Taken& of_stage = taken[stage];
+    StageCost& of_stage = cost_of_stage[stage];
     for (bool done = false; !done; ++of_stage.calls) {
       done = step();
       of_stage.steps += kernel.steps();

@@ -29,7 +29,7 @@ struct TestSmoothing {
 };
 
 TEST(MovingLeastSquares, MovesEveryPointAsATextbookDoes) {
-  const std::vector<Point> points = sheet_points(40, 0.01f, 0.003f, 1);
+  const std::vector<Point> points = curved_surface_points(40, 0.01f, 0.003f, 1);
   TestSmoothing test(2'000);
   const std::vector<Point> smoothed = test.run(points);
   ASSERT_EQ(smoothed.size(), points.size());
@@ -39,7 +39,7 @@ TEST(MovingLeastSquares, MovesEveryPointAsATextbookDoes) {
     for (const Point& q : points) {
       if (squared_distance(p, q) <= 0.03 * 0.03) near.push_back(q);
     }
-    expected.push_back(plain_surface(p, near, 0.03).point);
+    expected.push_back(reference_surface(p, near, 0.03).point);
   }
   std::vector<bool> taken(expected.size());
   for (std::size_t i = 0; i < smoothed.size(); ++i) {
@@ -51,7 +51,7 @@ TEST(MovingLeastSquares, MovesEveryPointAsATextbookDoes) {
 }
 
 TEST(MovingLeastSquares, GivesTheSameBitsInSlices) {
-  const std::vector<Point> points = sheet_points(30, 0.01f, 0.003f, 2);
+  const std::vector<Point> points = curved_surface_points(30, 0.01f, 0.003f, 2);
   TestSmoothing whole(1'000), sliced(1'000);
   EXPECT_EQ(whole.run(points), sliced.run(points, 11));
   EXPECT_EQ(whole.smoothing.reason(), Reason::none);
@@ -62,7 +62,7 @@ TEST(MovingLeastSquares, GivesTheSameBitsInSlices) {
 
 TEST(MovingLeastSquares, HasUnitNormalsAcrossTheSurface) {
   TestSmoothing test(1'000);
-  test.run(sheet_points(30, 0.01f, 0, 3));
+  test.run(curved_surface_points(30, 0.01f, 0, 3));
   const PointCloud& out = test.out->points;
   for (int i = 0; i < out.count; ++i) {
     const Vector3 normal = vector_of({out.normal_x[i], out.normal_y[i], out.normal_z[i]});
@@ -87,9 +87,9 @@ TEST(MovingLeastSquares, CountsTheStepsOfEachCandidateAndNeighbour) {
     }
     return steps;
   };
-  std::vector<Point> lonely;
-  for (int i = 0; i < k_crowd; ++i) lonely.push_back({static_cast<float>(i), 0, 0});
-  EXPECT_GE(steps_of(std::vector<Point>(k_crowd, Point{0, 0, 0})) - steps_of(lonely),
+  std::vector<Point> isolated;
+  for (int i = 0; i < k_crowd; ++i) isolated.push_back({static_cast<float>(i), 0, 0});
+  EXPECT_GE(steps_of(std::vector<Point>(k_crowd, Point{0, 0, 0})) - steps_of(isolated),
             k_crowd * (k_near_steps * (k_crowd - 1) + k_neighbour_steps * k_crowd) -
                 k_crowd * k_cell_steps_max);
 }
@@ -97,11 +97,11 @@ TEST(MovingLeastSquares, CountsTheStepsOfEachCandidateAndNeighbour) {
 TEST(MovingLeastSquares, LeavesOutPointsWithFewerThanThreeNeighboursAndCountsThem) {
   TestSmoothing test(100);
   EXPECT_TRUE(test.run({{0, 0, 0}}).empty());
-  EXPECT_EQ(test.smoothing.lonely(), 1);
+  EXPECT_EQ(test.smoothing.isolated(), 1);
   EXPECT_TRUE(test.run({{0, 0, 0}, {0.01f, 0, 0}, {1, 0, 0}}).empty());
-  EXPECT_EQ(test.smoothing.lonely(), 3);
+  EXPECT_EQ(test.smoothing.isolated(), 3);
   EXPECT_EQ(test.run({{0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0}}).size(), 3u);
-  EXPECT_EQ(test.smoothing.flat(), 3);
+  EXPECT_EQ(test.smoothing.on_plane(), 3);
 }
 
 TEST(MovingLeastSquares, GivesNothingOfNothingOrOfWhatIsNoNumberOrTooFarAway) {
@@ -124,7 +124,7 @@ TEST(MovingLeastSquares, LeavesCoincidentPointsWhereTheyAre) {
 }
 
 TEST(MovingLeastSquares, SaysWhenThereIsNoRoomAndWhenCandidatesWereUsedUp) {
-  const std::vector<Point> points = sheet_points(20, 0.01f, 0.001f, 4);
+  const std::vector<Point> points = curved_surface_points(20, 0.01f, 0.001f, 4);
   TestSmoothing test(400);
   const std::vector<Point> all = test.run(points);
   EXPECT_EQ(test.run(points, 50, 100), std::vector<Point>(all.begin(), all.begin() + 100));
@@ -137,14 +137,14 @@ TEST(MovingLeastSquares, SaysWhenThereIsNoRoomAndWhenCandidatesWereUsedUp) {
   few.candidates_max = 40;
   TestSmoothing cut(400, few);
   EXPECT_EQ(cut.run(points).size(), 400u);
-  EXPECT_GT(cut.smoothing.cut(), 200);
+  EXPECT_GT(cut.smoothing.candidates_exceeded(), 200);
   EXPECT_EQ(cut.smoothing.reason(), Reason::search_full);
   // Points of a crowd reach the limit; points far away from it do not.
   std::vector<Point> crowd(50, {0, 0, 0});
   for (int i = 1; i < 5; ++i) crowd.push_back({static_cast<float>(i), 0, 0});
   TestSmoothing far(400, few);
   far.run(crowd);
-  EXPECT_EQ(far.smoothing.cut(), 50);
+  EXPECT_EQ(far.smoothing.candidates_exceeded(), 50);
 }
 
 TEST(MovingLeastSquares, TakesNoMoreStepsThanItSaysForAPointAmongTheMostCandidates) {
@@ -191,9 +191,9 @@ TEST(MovingLeastSquares, CountsTheStepsOfACrowdByHand) {
     TestSmoothing test(50, settings);
     const TestCloud cloud(std::vector<Point>(static_cast<std::size_t>(crowd), {0.01f, 0, 0}));
     const int near = std::min(crowd, candidates);
-    const bool lonely = near < k_plane_neighbours_min;
+    const bool isolated = near < k_plane_neighbours_min;
     const int of_point =
-        k_surface_steps + near * k_near_steps + (lonely ? 0 : near * k_neighbour_steps);
+        k_surface_steps + near * k_near_steps + (isolated ? 0 : near * k_neighbour_steps);
     for (const int slice : {1 << 20, 3}) {
       TestCloud out(room);
       test.smoothing.begin(cloud.points);
@@ -201,14 +201,14 @@ TEST(MovingLeastSquares, CountsTheStepsOfACrowdByHand) {
       for (bool done = false; !done; steps += test.smoothing.steps()) {
         done = test.smoothing.step(slice, out.points);
       }
-      EXPECT_EQ(steps, sorting_steps(crowd, crowd) + k_lone_cell_steps + near * k_gather_steps +
+      EXPECT_EQ(steps, sorting_steps(crowd, crowd) + k_single_cell_steps + near * k_gather_steps +
                            crowd * of_point)
           << crowd << " of " << candidates;
-      EXPECT_EQ(out.points.count, lonely ? 0 : std::min(crowd, room));
-      EXPECT_EQ(test.smoothing.lonely(), lonely ? crowd : 0);
-      EXPECT_EQ(test.smoothing.flat(), lonely ? 0 : crowd);
-      EXPECT_EQ(test.smoothing.cut(), crowd > candidates ? crowd : 0);
-      EXPECT_EQ(test.smoothing.dropped(), lonely ? 0 : std::max(crowd - room, 0));
+      EXPECT_EQ(out.points.count, isolated ? 0 : std::min(crowd, room));
+      EXPECT_EQ(test.smoothing.isolated(), isolated ? crowd : 0);
+      EXPECT_EQ(test.smoothing.on_plane(), isolated ? 0 : crowd);
+      EXPECT_EQ(test.smoothing.candidates_exceeded(), crowd > candidates ? crowd : 0);
+      EXPECT_EQ(test.smoothing.dropped(), isolated ? 0 : std::max(crowd - room, 0));
     }
   }
 }
@@ -222,7 +222,7 @@ TEST(MovingLeastSquares, StatesTheStepsOfThePointWithTheMostCandidates) {
   test.smoothing.begin(cloud.points);
   while (!test.smoothing.step(1, out.points) && out.points.count == 0) {
   }
-  EXPECT_EQ(MovingLeastSquares::steps_max(few) - test.smoothing.steps(), k_worst_cell_more);
+  EXPECT_EQ(MovingLeastSquares::steps_max(few) - test.smoothing.steps(), k_worst_cell_extra_steps);
 }
 
 TEST(MovingLeastSquares, CountsANeighbourAtExactlyTheRadius) {
@@ -231,12 +231,12 @@ TEST(MovingLeastSquares, CountsANeighbourAtExactlyTheRadius) {
   TestSmoothing test(10, settings);
   // The corner point has two neighbours, the other two points one each.
   EXPECT_EQ(test.run({{0, 0, 0}, {0.03125f, 0, 0}, {0, 0.03125f, 0}}).size(), 1u);
-  EXPECT_EQ(test.smoothing.lonely(), 2);
+  EXPECT_EQ(test.smoothing.isolated(), 2);
   EXPECT_EQ(test.smoothing.source_of(0), 0);
 }
 
 TEST(MovingLeastSquares, TakesWeightsAsItsSettingSaysAndKeepsThemAnyway) {
-  const std::vector<Point> points = sheet_points(12, 0.01f, 0.003f, 6);
+  const std::vector<Point> points = curved_surface_points(12, 0.01f, 0.003f, 6);
   const auto smoothed = [&](NeighbourWeights weights, bool uneven) {
     MovingLeastSquaresSettings settings;
     settings.weights = weights;
@@ -260,7 +260,7 @@ TEST(MovingLeastSquares, TakesWeightsAsItsSettingSaysAndKeepsThemAnyway) {
 }
 
 TEST(MovingLeastSquares, BegunAgainSmoothsAsANewOneAndCountsAnew) {
-  const std::vector<Point> points = sheet_points(12, 0.01f, 0.003f, 7);
+  const std::vector<Point> points = curved_surface_points(12, 0.01f, 0.003f, 7);
   std::vector<Point> wrong(60, Point{0, 0, 0});
   wrong[0][2] = k_not_a_number;
   for (int i = 1; i < 100; ++i) wrong.push_back({0.1f * static_cast<float>(i), 0, 0});
@@ -270,16 +270,16 @@ TEST(MovingLeastSquares, BegunAgainSmoothsAsANewOneAndCountsAnew) {
   (void)used.run(wrong, 9, 10);
   EXPECT_EQ(used.smoothing.out_of_range(), 1);
   EXPECT_EQ(used.smoothing.dropped(), 14 + 49) << "of the grid and of the cloud";
-  EXPECT_EQ(used.smoothing.cut(), 59);
-  EXPECT_EQ(used.smoothing.flat(), 59);
-  EXPECT_EQ(used.smoothing.lonely(), 85);
+  EXPECT_EQ(used.smoothing.candidates_exceeded(), 59);
+  EXPECT_EQ(used.smoothing.on_plane(), 59);
+  EXPECT_EQ(used.smoothing.isolated(), 85);
   EXPECT_EQ(used.smoothing.reason(), Reason::cloud_full) << "which counts before a search cut";
   EXPECT_EQ(used.run(points), fresh.run(points));
   EXPECT_EQ(used.smoothing.out_of_range(), 0);
   EXPECT_EQ(used.smoothing.dropped(), 0);
-  EXPECT_EQ(used.smoothing.cut(), fresh.smoothing.cut());
-  EXPECT_EQ(used.smoothing.flat(), fresh.smoothing.flat());
-  EXPECT_EQ(used.smoothing.lonely(), fresh.smoothing.lonely());
+  EXPECT_EQ(used.smoothing.candidates_exceeded(), fresh.smoothing.candidates_exceeded());
+  EXPECT_EQ(used.smoothing.on_plane(), fresh.smoothing.on_plane());
+  EXPECT_EQ(used.smoothing.isolated(), fresh.smoothing.isolated());
   for (int i = 0; i < 144; ++i) {
     ASSERT_EQ(used.smoothing.source_of(i), fresh.smoothing.source_of(i));
   }

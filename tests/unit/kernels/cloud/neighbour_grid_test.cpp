@@ -32,11 +32,11 @@ TEST(NeighbourSweep, FindsEveryPointWithinTheRadius) {
     std::set<int> around;
     for (const NeighbourSweep::Row& row : rows) {
       for (int i = row.begin; i < row.end; ++i) {
-        EXPECT_TRUE(around.insert(sorted.grid.place_in_cloud(i)).second) << "twice";
+        EXPECT_TRUE(around.insert(sorted.grid.index_in_cloud(i)).second) << "twice";
       }
     }
     for (int i = sorted.grid.first_point(cell); i < sorted.grid.first_point(cell + 1); ++i) {
-      const int place = sorted.grid.place_in_cloud(i);
+      const int place = sorted.grid.index_in_cloud(i);
       const Point point = points[static_cast<std::size_t>(place)];
       ASSERT_EQ(sorted.grid.x()[i], point[0]);
       for (std::size_t j = 0; j < points.size(); ++j) {
@@ -56,7 +56,7 @@ TEST(NeighbourGrid, SortsByCellAndKeepsTheCloudsOrderWithin) {
     EXPECT_GT(sorted.grid.key(cell), last);
     last = sorted.grid.key(cell);
     for (int i = sorted.grid.first_point(cell) + 1; i < sorted.grid.first_point(cell + 1); ++i) {
-      EXPECT_GT(sorted.grid.place_in_cloud(i), sorted.grid.place_in_cloud(i - 1));
+      EXPECT_GT(sorted.grid.index_in_cloud(i), sorted.grid.index_in_cloud(i - 1));
     }
   }
 }
@@ -66,7 +66,7 @@ TEST(NeighbourGrid, SortsInSlicesAsInOne) {
   const SortedCloud whole(points, 0.05f), sliced(points, 0.05f, 13);
   ASSERT_EQ(whole.grid.count(), sliced.grid.count());
   for (int i = 0; i < whole.grid.count(); ++i) {
-    ASSERT_EQ(whole.grid.place_in_cloud(i), sliced.grid.place_in_cloud(i));
+    ASSERT_EQ(whole.grid.index_in_cloud(i), sliced.grid.index_in_cloud(i));
   }
 }
 
@@ -107,8 +107,8 @@ TEST(NeighbourGrid, KeepsTheFirstPointsWhenFull) {
   while (!grid.sorted()) grid.sort(1);
   EXPECT_EQ(grid.count(), 2);
   EXPECT_EQ(grid.dropped(), 1);
-  EXPECT_EQ(grid.place_in_cloud(0), 1);
-  EXPECT_EQ(grid.place_in_cloud(1), 0);
+  EXPECT_EQ(grid.index_in_cloud(0), 1);
+  EXPECT_EQ(grid.index_in_cloud(1), 0);
 }
 
 TEST(NeighbourGrid, EndsAtTheSameCellAlongEachAxisAndEitherWay) {
@@ -122,7 +122,7 @@ TEST(NeighbourGrid, EndsAtTheSameCellAlongEachAxisAndEitherWay) {
       const SortedCloud sorted({on, within}, 1.0f);
       EXPECT_EQ(sorted.grid.out_of_range(), 1) << axis << ' ' << side;
       ASSERT_EQ(sorted.grid.count(), 1) << axis << ' ' << side;
-      EXPECT_EQ(sorted.grid.place_in_cloud(0), 1);
+      EXPECT_EQ(sorted.grid.index_in_cloud(0), 1);
       // The first and the last cell of each axis stay empty.
       const std::uint32_t digit = sorted.grid.key(0) >> (axis * k_grid_axis_bits) & 1023;
       EXPECT_EQ(digit, side < 0 ? 1u : 1022u);
@@ -197,7 +197,7 @@ TEST(NeighbourGrid, BegunAgainSortsAsANewOne) {
       ASSERT_EQ(used.first_point(cell), fresh.grid.first_point(cell));
     }
     for (int i = 0; i < 60; ++i) {
-      ASSERT_EQ(used.place_in_cloud(i), fresh.grid.place_in_cloud(i));
+      ASSERT_EQ(used.index_in_cloud(i), fresh.grid.index_in_cloud(i));
       ASSERT_EQ(used.x()[i], fresh.grid.x()[i]);
       ASSERT_EQ(used.y()[i], fresh.grid.y()[i]);
       ASSERT_EQ(used.z()[i], fresh.grid.z()[i]);

@@ -43,7 +43,7 @@ TEST(NeighbourSweep, ComparesOneByOneThenByHalves) {
   NeighbourSweep::Rows rows;
   const SortedCloud lone({{0.5f, 0.5f, 0.5f}}, 1.0f);
   sweep.begin();
-  EXPECT_EQ(sweep.rows_around(lone.grid, 0, rows), k_lone_cell_compared);
+  EXPECT_EQ(sweep.rows_around(lone.grid, 0, rows), k_single_cell_comparisons);
   std::vector<Point> line;
   for (int x = 0; x < 69; ++x) line.push_back({static_cast<float>(x) + 0.5f, 0.5f, 0.5f});
   line.push_back({0.5f, 0.5f, 1.5f});

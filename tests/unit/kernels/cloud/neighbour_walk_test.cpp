@@ -132,9 +132,9 @@ TEST(NeighbourWalk, BeginsNoPointOnceTheStepsAreUsedUp) {
   constexpr int k_look = 10;
   TestWalk test(points_in_cells({8}));
   test.sort(k_whole);
-  EXPECT_FALSE(test.step({1 << 20, k_lone_cell_steps + k_look}, 0, k_look));
+  EXPECT_FALSE(test.step({1 << 20, k_single_cell_steps + k_look}, 0, k_look));
   EXPECT_EQ(test.seen.size(), 1u);
-  EXPECT_EQ(test.walk.steps(), k_lone_cell_steps + k_look);
+  EXPECT_EQ(test.walk.steps(), k_single_cell_steps + k_look);
   EXPECT_FALSE(test.step({1 << 20, 2 * k_look}, 0, k_look));
   EXPECT_EQ(test.seen.size(), 3u);
   EXPECT_FALSE(test.step({1 << 20, 2 * k_look + 1}, 0, k_look));

@@ -11,14 +11,14 @@
 
 namespace glint {
 
-struct Oriented {
+struct PointWithNormal {
   Point point;
   Point normal;
 };
 
-inline TestCloud cloud_of(const std::vector<Oriented>& points) {
+inline TestCloud cloud_of(const std::vector<PointWithNormal>& points) {
   TestCloud cloud(static_cast<int>(points.size()));
-  for (const Oriented& p : points) {
+  for (const PointWithNormal& p : points) {
     const int i = cloud.points.count;
     EXPECT_TRUE(cloud.points.add(p.point[0], p.point[1], p.point[2]));
     cloud.points.normal_x[i] = p.normal[0];
@@ -51,11 +51,11 @@ struct TestSearch {
 
 // Scene: a floor of 6,000 points, a wall of 3,000, 1,500 scattered, and 400 on the floor's plane
 // with normals across it. 3 mm noise; normals are a few degrees off and of either sign.
-inline std::vector<Oriented> room(std::uint64_t seed) {
+inline std::vector<PointWithNormal> scene_points(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> side(-1, 1);
   std::normal_distribution<float> noise(0, 0.003f), tilt(0, 0.05f);
-  std::vector<Oriented> out;
+  std::vector<PointWithNormal> out;
   const auto sign = [&] { return random() % 2 == 0 ? 1.0f : -1.0f; };
   const auto unit = [](float x, float y, float z) {
     const float length = std::sqrt(x * x + y * y + z * z);
@@ -80,8 +80,8 @@ inline std::vector<Oriented> room(std::uint64_t seed) {
 }
 
 // A grid with 1 cm spacing and `across` points a row, at height z, all with this normal.
-inline std::vector<Oriented> tile(int points, int across, float z, const Point& normal) {
-  std::vector<Oriented> out;
+inline std::vector<PointWithNormal> tile(int points, int across, float z, const Point& normal) {
+  std::vector<PointWithNormal> out;
   for (int i = 0; i < points; ++i) {
     out.push_back(
         {{0.01f * static_cast<float>(i % across), 0.01f * static_cast<float>(i / across), z},

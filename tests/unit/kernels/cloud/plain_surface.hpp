@@ -12,7 +12,7 @@
 
 namespace glint {
 
-struct PlainSurface {
+struct ReferenceSurface {
   Vector3 point = Vector3::Zero(), normal = Vector3::Zero();
 };
 
@@ -21,7 +21,8 @@ inline Vector3 vector_of(const Point& p) {
 }
 
 // Requires at least six neighbours.
-inline PlainSurface plain_surface(const Point& of, const std::vector<Point>& near, double radius) {
+inline ReferenceSurface reference_surface(const Point& of, const std::vector<Point>& near,
+                                          double radius) {
   Vector3 mean = Vector3::Zero();
   for (const Point& p : near) mean += vector_of(p) / static_cast<double>(near.size());
   Matrix3 covariance = Matrix3::Zero();

@@ -8,11 +8,11 @@ namespace {
 
 constexpr SliceSize k_whole = 1 << 20;
 
-struct Taken {
+struct PassCost {
   int calls = 0, steps = 0;
 };
-Taken run(PlaneSearch& search, const PointCloud& cloud, SliceSize most) {
-  Taken out;
+PassCost run(PlaneSearch& search, const PointCloud& cloud, SliceSize most) {
+  PassCost out;
   search.begin(cloud);
   for (bool done = false; !done; ++out.calls) {
     done = search.step(most);
@@ -21,11 +21,11 @@ Taken run(PlaneSearch& search, const PointCloud& cloud, SliceSize most) {
   return out;
 }
 
-PlaneSettings few_tries(int tries, int scored_max, int planes_max = 1) {
+PlaneSettings few_tries(int candidates_max, int scored_max, int planes_max = 1) {
   PlaneSettings settings;
   settings.planes_max = planes_max;
   settings.points_min = 100;
-  settings.tries = tries;
+  settings.candidates_max = candidates_max;
   settings.scored_max = scored_max;
   return settings;
 }
@@ -47,9 +47,9 @@ TEST(PlaneSteps, AreThoseOfItsPassesInSlicesOfAnySize) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     for (const auto& c : cases) {
       PlaneSettings settings = few_tries(1, 1);
-      settings.seed = seed;
+      settings.random_seed = seed;
       TestSearch test(k_points, settings);
-      const Taken one = run(test.search, cloud.points, c.most);
+      const PassCost one = run(test.search, cloud.points, c.most);
       const int planes = test.search.count();  // 0 if the three drawn points are collinear
       found += planes;
       EXPECT_EQ(one.calls, c.listed + c.drawn + 1 + planes * (k_plane_fits * c.fitted + c.taken));
@@ -57,15 +57,15 @@ TEST(PlaneSteps, AreThoseOfItsPassesInSlicesOfAnySize) {
           k_plane_list_steps + k_plane_draw_steps +
           planes * (k_plane_score_steps + k_plane_fits * k_plane_fit_steps + k_plane_take_steps);
       EXPECT_EQ(one.steps,
-                one.calls * k_plane_turn_steps + k_points * of_points + k_plane_try_steps);
+                one.calls * k_plane_call_steps + k_points * of_points + k_plane_try_steps);
       // If a further plane is allowed, the free points are listed again; none is left.
       settings.planes_max = 2;
       TestSearch more(k_points, settings);
-      const Taken two = run(more.search, cloud.points, c.most);
+      const PassCost two = run(more.search, cloud.points, c.most);
       EXPECT_EQ(more.search.count(), planes);
       EXPECT_EQ(two.calls, one.calls + planes * c.listed);
       EXPECT_EQ(two.steps - one.steps,
-                planes * (c.listed * k_plane_turn_steps + k_points * k_plane_list_steps));
+                planes * (c.listed * k_plane_call_steps + k_points * k_plane_list_steps));
     }
   }
   EXPECT_GT(found, 5);
@@ -85,10 +85,10 @@ TEST(PlaneSteps, AreThoseOfItsTriesInSlicesOfAnySize) {
                {{1 << 20, 48}, 50, 200, 50}};  // two tries use up the steps
   for (const auto& c : cases) {
     TestSearch test(k_points, few_tries(k_tries, 8));
-    const Taken all = run(test.search, cloud.points, c.most);
+    const PassCost all = run(test.search, cloud.points, c.most);
     EXPECT_EQ(test.search.count(), 0);
     EXPECT_EQ(all.calls, c.listed + c.drawn + c.tried);
-    EXPECT_EQ(all.steps, all.calls * k_plane_turn_steps +
+    EXPECT_EQ(all.steps, all.calls * k_plane_call_steps +
                              k_points * (k_plane_list_steps + k_plane_draw_steps) +
                              k_tries * k_plane_try_steps);
   }
@@ -102,12 +102,12 @@ TEST(PlaneSteps, CountAScoredSampleByItsPoints) {
   int checked = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     PlaneSettings settings = few_tries(k_tries, k_tries);
-    settings.seed = seed;
+    settings.random_seed = seed;
     TestSearch test(k_points, settings);
-    const Taken whole = run(test.search, cloud.points, k_whole);
+    const PassCost whole = run(test.search, cloud.points, k_whole);
     const int of_points = k_plane_list_steps + k_plane_draw_steps +
                           k_plane_fits * k_plane_fit_steps + k_plane_take_steps;
-    const int scored = whole.steps - whole.calls * k_plane_turn_steps - k_points * of_points -
+    const int scored = whole.steps - whole.calls * k_plane_call_steps - k_points * of_points -
                        k_tries * k_plane_try_steps;
     if (scored != k_tries * k_points * k_plane_score_steps) continue;  // some draws were collinear
     ++checked;
@@ -135,12 +135,12 @@ struct PlainSearch {
           free.size() * static_cast<std::size_t>(i) / static_cast<std::size_t>(sampled);
       const std::size_t end =
           free.size() * static_cast<std::size_t>(i + 1) / static_cast<std::size_t>(sampled);
-      sample.add(cloud, free[begin + random_at(settings.seed, plane, i) % (end - begin)]);
+      sample.add(cloud, free[begin + random_at(settings.random_seed, plane, i) % (end - begin)]);
     }
     int most = 0;
     tried = scored = 0;
-    while (tried < settings.tries && scored < settings.scored_max) {
-      const std::uint64_t drawn = random_at(settings.seed, plane, k_plane_sample + tried++);
+    while (tried < settings.candidates_max && scored < settings.scored_max) {
+      const std::uint64_t drawn = random_at(settings.random_seed, plane, k_plane_sample + tried++);
       CandidatePlane candidate;
       if (!sample.candidate_of(drawn, settings.gate, candidate)) continue;
       ++scored;
@@ -155,16 +155,16 @@ struct PlainSearch {
 // is found first. Of 4,000 points about half are in the sample.
 TEST(PlaneSteps, AreThoseOfAPlainSearchThatDrawsTheSameNumbers) {
   for (const int points : {300, 2'000}) {
-    std::vector<Oriented> both = tile(points, 50, 0, k_up);
-    for (const Oriented& p : tile(points, 50, 1, k_up)) both.push_back(p);
+    std::vector<PointWithNormal> both = tile(points, 50, 0, k_up);
+    for (const PointWithNormal& p : tile(points, 50, 1, k_up)) both.push_back(p);
     for (std::size_t i = 0; i < both.size(); i += 7) both[i].normal = {0.6f, 0, 0.8f};
     const TestCloud cloud = cloud_of(both);
     int upper = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
       PlaneSettings settings = few_tries(500, 12, 2);
-      settings.seed = seed;
+      settings.random_seed = seed;
       TestSearch test(2 * points, settings);
-      const Taken all = run(test.search, cloud.points, k_whole);
+      const PassCost all = run(test.search, cloud.points, k_whole);
       ASSERT_EQ(test.search.count(), 2);
       int steps = 0;
       for (int plane = 0; plane < 2; ++plane) {
@@ -185,7 +185,7 @@ TEST(PlaneSteps, AreThoseOfAPlainSearchThatDrawsTheSameNumbers) {
         EXPECT_NEAR(sign * found.offset_m, plain.best.offset_m, 0.01) << seed << ' ' << plane;
         upper += plane == 0 && std::abs(found.offset_m) > 0.5 ? 1 : 0;
       }
-      EXPECT_EQ(all.steps, all.calls * k_plane_turn_steps + steps) << points << ' ' << seed;
+      EXPECT_EQ(all.steps, all.calls * k_plane_call_steps + steps) << points << ' ' << seed;
       EXPECT_EQ(all.calls, 2 * (3 + k_plane_fits + 1));
     }
     EXPECT_GT(upper, 0);
@@ -194,7 +194,7 @@ TEST(PlaneSteps, AreThoseOfAPlainSearchThatDrawsTheSameNumbers) {
 }
 
 TEST(PlaneSteps, GoNoFurtherBeyondASliceThanStated) {
-  const TestCloud cloud = cloud_of(room(8));
+  const TestCloud cloud = cloud_of(scene_points(8));
   TestSearch test(20'000);
   for (const int steps : {1, 300, 5'000}) {
     test.search.begin(cloud.points);

@@ -32,7 +32,7 @@ TEST(PlaneSums, HaveTheSmallestEigenvectorWhateverTheShape) {
     const Eigen::SelfAdjointEigenSolver<Matrix3> solver(covariance);
     const FittedPlane plane = fit_plane(sums);
     EXPECT_NEAR(plane.variance, solver.eigenvalues()(0), 1e-13);
-    EXPECT_NEAR(plane.spread, solver.eigenvalues()(1), 1e-13);
+    EXPECT_NEAR(plane.in_plane_variance_min, solver.eigenvalues()(1), 1e-13);
     EXPECT_NEAR(plane.normal.norm(), 1, 1e-14);
     EXPECT_LT((plane.mean - mean).norm(), 1e-14);
     // Two nearly equal eigenvalues leave the vector undetermined: compare the variance along it.
@@ -49,9 +49,9 @@ TEST(PlaneSums, HaveAUnitNormalAndNoSpreadForPointsOnALineOrInOnePlace) {
   }
   EXPECT_NEAR(fit_plane(line).normal.norm(), 1, 1e-12);
   EXPECT_NEAR(fit_plane(line).normal.dot(Vector3(1, 2, -1)), 0, 1e-7);
-  EXPECT_NEAR(fit_plane(line).spread, 0, 1e-15);
+  EXPECT_NEAR(fit_plane(line).in_plane_variance_min, 0, 1e-15);
   EXPECT_NEAR(fit_plane(place).normal.norm(), 1, 1e-12);
-  EXPECT_NEAR(fit_plane(place).spread, 0, 1e-15);
+  EXPECT_NEAR(fit_plane(place).in_plane_variance_min, 0, 1e-15);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 // A table of 1 cm voxels, and beside it a wall that crosses its plane and has the table's normals
 // (worst case). Only the wall's other points show that the stripe is not part of the table.
 TEST(PlaneSupport, TakesOffAStripeAndLeavesEdgesOn) {
-  std::vector<Oriented> points;
+  std::vector<PointWithNormal> points;
   for (int i = 0; i < 60 * 60; ++i) {
     points.push_back(
         {{0.01f * static_cast<float>(i % 60), 0.01f * static_cast<float>(i / 60), 0}, {0, 0, 1}});
@@ -46,11 +46,11 @@ TEST(PlaneSupport, TakesOffAStripeAndLeavesEdgesOn) {
     }
   }
   EXPECT_GE(stripe, 40);
-  EXPECT_EQ(support.taken_off(), stripe);
+  EXPECT_EQ(support.removed(), stripe);
 }
 
 TEST(PlaneSupport, CountsItsStepsAndRefusesSettingsThatFindNothing) {
-  const std::vector<Oriented> points = room(3);
+  const std::vector<PointWithNormal> points = scene_points(3);
   const TestCloud cloud = cloud_of(points);
   TestSearch test(20'000);
   test.run(cloud.points);
@@ -78,12 +78,12 @@ TEST(PlaneSupport, CountsItsStepsAndRefusesSettingsThatFindNothing) {
 
 // Reference: all pairs of points.
 TEST(PlaneSupport, LeavesOnAPlaneWhatAPlainCountOfNeighboursLeaves) {
-  const std::vector<Oriented> points = room(5);
+  const std::vector<PointWithNormal> points = scene_points(5);
   const TestCloud cloud = cloud_of(points);
   TestSearch test(20'000);
   test.run(cloud.points, 211);
   constexpr float k_limit = 0.2f * 0.2f;
-  int taken_off = 0;
+  int removed = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint8_t plane = test.search.plane_of(static_cast<int>(i));
     int near = 0, on_plane = 0;
@@ -97,12 +97,12 @@ TEST(PlaneSupport, LeavesOnAPlaneWhatAPlainCountOfNeighboursLeaves) {
     }
     const bool stays = plane == PlaneSearch::k_no_plane ||
                        static_cast<float>(on_plane) >= 0.4f * static_cast<float>(near);
-    taken_off += stays ? 0 : 1;
+    removed += stays ? 0 : 1;
     ASSERT_EQ(test.support.plane_of(static_cast<int>(i)), stays ? plane : PlaneSearch::k_no_plane)
         << i << ": " << on_plane << " of " << near;
   }
-  EXPECT_EQ(test.support.taken_off(), taken_off);
-  EXPECT_GT(taken_off, 0);
+  EXPECT_EQ(test.support.removed(), removed);
+  EXPECT_GT(removed, 0);
 }
 
 TEST(PlaneSupport, RefusesWhatItCannotWorkWith) {
@@ -120,7 +120,7 @@ struct SupportedTile {
   static constexpr int k_on = 400, k_off = 16, k_all = k_on + k_off;
   explicit SupportedTile(PlaneSupportSettings settings = {}, bool off_first = false)
       : memory(PlaneSupport::bytes(k_all)) {
-    std::vector<Oriented> points = tile(k_on, 20, 0.5f, {0, 0, 1});
+    std::vector<PointWithNormal> points = tile(k_on, 20, 0.5f, {0, 0, 1});
     points.insert(off_first ? points.begin() : points.end(), k_off, {{0.5f, 0.5f, 0.75f}, {}});
     cloud = std::make_unique<TestCloud>(cloud_of(points));
     PlaneSettings planes;
@@ -153,16 +153,16 @@ struct SupportedTile {
 
 TEST(PlaneSupport, CountsTheStepsOfMarkingSortingAndEachCandidate) {
   constexpr int k_all = SupportedTile::k_all, k_on = SupportedTile::k_on;
-  constexpr int k_walk = k_all * k_support_steps + k_lone_cell_steps;
+  constexpr int k_walk = k_all * k_support_steps + k_single_cell_steps;
   for (const int candidates : {1, 20, k_all, 4096}) {
     SupportedTile tile({1, 0, candidates});
     const int voted = std::min(candidates, k_all) * k_on * k_vote_steps;
     const int rest = sorting_steps(k_all, k_all) + k_walk + voted;
-    EXPECT_EQ(tile.run(1 << 20), 1 + k_all / k_marked_a_step + rest) << candidates;
+    EXPECT_EQ(tile.run(1 << 20), 1 + k_all / k_marked_per_step + rest) << candidates;
     // Marking 100 points takes seven steps, the last 16 take two.
-    EXPECT_EQ(tile.run(100), 4 * (1 + 100 / k_marked_a_step) + 1 + 1 + rest) << candidates;
+    EXPECT_EQ(tile.run(100), 4 * (1 + 100 / k_marked_per_step) + 1 + 1 + rest) << candidates;
     // With a budget of two steps, each call takes three: one is the overhead of the call.
-    EXPECT_EQ(tile.run({1 << 20, 2}), k_all / (2 * k_marked_a_step) * 3 + rest) << candidates;
+    EXPECT_EQ(tile.run({1 << 20, 2}), k_all / (2 * k_marked_per_step) * 3 + rest) << candidates;
   }
 }
 
@@ -178,7 +178,8 @@ TEST(PlaneSupport, TakesNoMoreStepsThanItStatesForOnePoint) {
     if (calls > 6 * SupportedTile::k_all) most = std::max(most, tile.support.steps());
   }
   EXPECT_EQ(most, k_support_steps + k_vote_steps * 100);
-  EXPECT_EQ(PlaneSupport::steps_max(settings) - most - k_lone_cell_steps, k_worst_cell_more);
+  EXPECT_EQ(PlaneSupport::steps_max(settings) - most - k_single_cell_steps,
+            k_worst_cell_extra_steps);
 }
 
 // The first points of the cell vote: 16 of the first 20 are off the plane.
@@ -190,19 +191,19 @@ TEST(PlaneSupport, StaysWhereExactlyThePartAskedForOfTheCandidatesIsOnThePlane) 
     SupportedTile tile({1, part, candidates}, true);
     tile.run(50);
     EXPECT_EQ(tile.stay(), stays ? SupportedTile::k_on : 0) << part << ' ' << candidates;
-    EXPECT_EQ(tile.support.taken_off(), stays ? 0 : SupportedTile::k_on);
+    EXPECT_EQ(tile.support.removed(), stays ? 0 : SupportedTile::k_on);
   }
 }
 
 // One further point is off the plane, above the corner point at exactly the radius.
 TEST(PlaneSupport, CountsANeighbourAtExactlyTheRadius) {
-  std::vector<Oriented> points;
+  std::vector<PointWithNormal> points;
   for (int i = 0; i < 9; ++i) {
     points.push_back(
         {{0.125f * static_cast<float>(i % 3), 0.125f * static_cast<float>(i / 3), 0}, {0, 0, 1}});
   }
   for (const float height : {0.125f, std::nextafter(0.125f, 1.0f)}) {
-    std::vector<Oriented> all = points;
+    std::vector<PointWithNormal> all = points;
     all.push_back({{0.25f, 0.25f, height}, {}});
     const TestCloud cloud = cloud_of(all);
     PlaneSettings planes;
@@ -217,7 +218,7 @@ TEST(PlaneSupport, CountsANeighbourAtExactlyTheRadius) {
     support.begin(cloud.points, search.search);
     while (!support.step(1)) {
     }
-    EXPECT_EQ(support.taken_off(), height == 0.125f ? 1 : 0) << height;
+    EXPECT_EQ(support.removed(), height == 0.125f ? 1 : 0) << height;
     EXPECT_EQ(support.plane_of(8), height == 0.125f ? PlaneSearch::k_no_plane : 0);
   }
 }
@@ -225,11 +226,11 @@ TEST(PlaneSupport, CountsANeighbourAtExactlyTheRadius) {
 TEST(PlaneSupport, BegunAgainJudgesAsANewOne) {
   SupportedTile used({1, 1, 17}, true);
   const int steps = used.run(1 << 20);
-  EXPECT_EQ(used.support.taken_off(), SupportedTile::k_on);
+  EXPECT_EQ(used.support.removed(), SupportedTile::k_on);
   EXPECT_EQ(used.run(1 << 20), steps);
-  EXPECT_EQ(used.support.taken_off(), SupportedTile::k_on) << "counted anew";
+  EXPECT_EQ(used.support.removed(), SupportedTile::k_on) << "counted anew";
   used.support.begin(used.cloud->points, used.planes_of->search);
-  EXPECT_EQ(used.support.taken_off(), 0);
+  EXPECT_EQ(used.support.removed(), 0);
   EXPECT_EQ(used.stay(), 0) << "at once each point is on no plane";
 }
 
@@ -279,7 +280,7 @@ TEST(PlaneSupport, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
                                                {0.05f, k_not_a_number, 100},
                                                {0.05f, 0.4f, 0}}) {
     EXPECT_EQ(reason_of(settings), Reason::out_of_range)
-        << settings.radius_m << ' ' << settings.part_min << ' ' << settings.candidates_max;
+        << settings.radius_m << ' ' << settings.support_share_min << ' ' << settings.candidates_max;
   }
   EXPECT_EQ(reason_of({}, 0), Reason::out_of_range);
   EXPECT_EQ(reason_of({}, k_cloud_points_max + 1), Reason::out_of_range);

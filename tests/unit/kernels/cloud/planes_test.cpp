@@ -32,15 +32,15 @@ TEST(Planes, CountTheStepsOfEveryPassAndTry) {
     return steps;
   };
   PlaneSettings few, many;
-  few.tries = 100;
-  many.tries = 1'100;
+  few.candidates_max = 100;
+  many.candidates_max = 1'100;
   EXPECT_EQ(steps_of(many) - steps_of(few), 1'000 * k_plane_try_steps);
   EXPECT_GE(steps_of(few), 600 * (k_plane_list_steps + k_plane_draw_steps));
 }
 
 TEST(Planes, AreFoundLargestFirstAndFittedToTheirPoints) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const TestCloud cloud = cloud_of(room(seed));
+    const TestCloud cloud = cloud_of(scene_points(seed));
     TestSearch test(20'000);
     test.run(cloud.points);
     ASSERT_EQ(test.search.count(), 2);
@@ -57,7 +57,7 @@ TEST(Planes, AreFoundLargestFirstAndFittedToTheirPoints) {
 }
 
 TEST(Planes, TakeNoPointWhoseNormalStandsAcrossAndNoneBeyondTheThreshold) {
-  const std::vector<Oriented> points = room(1);
+  const std::vector<PointWithNormal> points = scene_points(1);
   const TestCloud cloud = cloud_of(points);
   TestSearch test(20'000);
   test.run(cloud.points);
@@ -80,7 +80,7 @@ TEST(Planes, TakeNoPointWhoseNormalStandsAcrossAndNoneBeyondTheThreshold) {
 }
 
 TEST(Planes, AreTheSameInSlices) {
-  const TestCloud cloud = cloud_of(room(3));
+  const TestCloud cloud = cloud_of(scene_points(3));
   TestSearch whole(20'000), sliced(20'000);
   whole.run(cloud.points);
   sliced.run(cloud.points, 37);
@@ -92,12 +92,12 @@ TEST(Planes, AreTheSameInSlices) {
 }
 
 TEST(Planes, AreNotSeenInScatteredPointsOrInFewerThanAsked) {
-  std::vector<Oriented> points = room(4);
-  std::vector<Oriented> scattered(points.begin() + 9'000, points.begin() + 10'500);
+  std::vector<PointWithNormal> points = scene_points(4);
+  std::vector<PointWithNormal> scattered(points.begin() + 9'000, points.begin() + 10'500);
   TestSearch test(20'000);
   test.run(cloud_of(scattered).points);
   EXPECT_EQ(test.search.count(), 0);
-  std::vector<Oriented> floor(points.begin(), points.begin() + 480);
+  std::vector<PointWithNormal> floor(points.begin(), points.begin() + 480);
   test.run(cloud_of(floor).points);
   EXPECT_EQ(test.search.count(), 0);
   floor.assign(points.begin(), points.begin() + 600);
@@ -110,14 +110,14 @@ TEST(Planes, AreNoneOfNothingNoNumbersOnePlaceALineOrPointsWithoutNormals) {
   test.run(PointCloud{});
   EXPECT_EQ(test.search.count(), 0);
   const Point up{0, 0, 1};
-  const auto count_of = [&](const std::vector<Oriented>& points) {
+  const auto count_of = [&](const std::vector<PointWithNormal>& points) {
     test.run(cloud_of(points).points);
     return test.search.count();
   };
   EXPECT_EQ(count_of({{{0, 0, 0}, up}}), 0);
-  EXPECT_EQ(count_of(std::vector<Oriented>(1'000, {{k_not_a_number, 0, 0}, up})), 0);
-  EXPECT_EQ(count_of(std::vector<Oriented>(1'000, {{1, 2, 3}, up})), 0);
-  std::vector<Oriented> line, bare;
+  EXPECT_EQ(count_of(std::vector<PointWithNormal>(1'000, {{k_not_a_number, 0, 0}, up})), 0);
+  EXPECT_EQ(count_of(std::vector<PointWithNormal>(1'000, {{1, 2, 3}, up})), 0);
+  std::vector<PointWithNormal> line, bare;
   for (int i = 0; i < 1'000; ++i) {
     const float s = 0.001f * static_cast<float>(i);
     line.push_back({{s, 0, 0}, up});
@@ -128,7 +128,7 @@ TEST(Planes, AreNoneOfNothingNoNumbersOnePlaceALineOrPointsWithoutNormals) {
 }
 
 TEST(Planes, OfACloudBeyondTheCapacityAreThoseOfItsFirstPointsAndItSaysSo) {
-  TestCloud cloud = cloud_of(room(5));
+  TestCloud cloud = cloud_of(scene_points(5));
   TestSearch test(6'000);
   test.run(cloud.points);
   EXPECT_EQ(test.search.reason(), Reason::cloud_full);
@@ -140,7 +140,7 @@ TEST(Planes, EndWithAsManyAsMayBe) {
   PlaneSettings one;
   one.planes_max = 1;
   TestSearch test(20'000, one);
-  test.run(cloud_of(room(6)).points);
+  test.run(cloud_of(scene_points(6)).points);
   EXPECT_EQ(test.search.count(), 1);
 }
 
@@ -171,7 +171,7 @@ TEST(Planes, TakeWhatIsExactlyAtTheGate) {
   settings.points_min = 400;
   settings.gate.threshold_m = height;
   const float cosine = settings.gate.normal_cosine_min;
-  std::vector<Oriented> points = tile(400, 20, 0, {0, 0, 1});
+  std::vector<PointWithNormal> points = tile(400, 20, 0, {0, 0, 1});
   for (const float z : {height, -height, beyond, -beyond})
     points.push_back({{0.1f, 0.1f, z}, {0, 0, 1}});
   for (const float along : {cosine, -cosine, std::nextafter(cosine, 0.0f)}) {
@@ -190,8 +190,8 @@ TEST(Planes, TakeWhatIsExactlyAtTheGate) {
 // All normals along one coordinate axis.
 TEST(Planes, AreFoundAcrossEachAxis) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::vector<Oriented> points = tile(600, 25, 0.5f, {0, 0, 1});
-    for (Oriented& p : points) {
+    std::vector<PointWithNormal> points = tile(600, 25, 0.5f, {0, 0, 1});
+    for (PointWithNormal& p : points) {
       std::swap(p.point[axis], p.point[2]);
       std::swap(p.normal[axis], p.normal[2]);
     }
@@ -209,10 +209,10 @@ TEST(Planes, AreFoundAcrossEachAxis) {
 TEST(Planes, AreTheLeastSquaresOfTheirPoints) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<float> noise(-0.004f, 0.004f);
-  std::vector<Oriented> points = tile(900, 30, 0, {0, 0, 1});
+  std::vector<PointWithNormal> points = tile(900, 30, 0, {0, 0, 1});
   Vector3 mean = Vector3::Zero();
   std::vector<Vector3> places;
-  for (Oriented& p : points) {
+  for (PointWithNormal& p : points) {
     p.point = {p.point[0] + 0.7f, p.point[1] - 0.4f, 1.5f + 0.2f * p.point[0] + noise(random)};
     places.emplace_back(static_cast<double>(p.point[0]), static_cast<double>(p.point[1]),
                         static_cast<double>(p.point[2]));
@@ -235,8 +235,8 @@ TEST(Planes, AreTheLeastSquaresOfTheirPoints) {
 
 // 50 further points are on no plane.
 TEST(Planes, WithTooFewOfTheFreePointsAreNone) {
-  std::vector<Oriented> points = tile(400, 20, 0.5f, {0, 0, 1});
-  for (const Oriented& p : tile(50, 50, 0.9f, {0, 1, 0})) points.push_back(p);
+  std::vector<PointWithNormal> points = tile(400, 20, 0.5f, {0, 0, 1});
+  for (const PointWithNormal& p : tile(50, 50, 0.9f, {0, 1, 0})) points.push_back(p);
   for (const int points_min : {400, 401}) {
     PlaneSettings settings;
     settings.points_min = points_min;
@@ -247,9 +247,9 @@ TEST(Planes, WithTooFewOfTheFreePointsAreNone) {
 }
 
 TEST(Planes, AreAsManyAsAskedForOfMore) {
-  std::vector<Oriented> points;
+  std::vector<PointWithNormal> points;
   for (const float z : {0.0f, 1.0f, 2.0f}) {
-    for (const Oriented& p : tile(200, 20, z, {0, 0, 1})) points.push_back(p);
+    for (const PointWithNormal& p : tile(200, 20, z, {0, 0, 1})) points.push_back(p);
   }
   for (const int planes_max : {0, 1, 2, 3, k_planes_max}) {
     PlaneSettings settings;
@@ -266,7 +266,7 @@ TEST(Planes, AreAsManyAsAskedForOfMore) {
 }
 
 TEST(Planes, BegunAgainAreThoseOfANewSearch) {
-  const TestCloud before = cloud_of(room(1)), cloud = cloud_of(room(2));
+  const TestCloud before = cloud_of(scene_points(1)), cloud = cloud_of(scene_points(2));
   TestSearch used(11'000), fresh(11'000);
   for (const int calls : {3, 1'000'000}) {  // interrupted, and complete
     used.search.begin(before.points);
@@ -321,8 +321,8 @@ TEST(Planes, TakeEachSettingAtItsLimitAndRefuseItBeyond) {
   EXPECT_EQ(reason_of([](S& s) { s.planes_max = k_planes_max + 1; }), out);
   EXPECT_EQ(reason_of([](S& s) { s.points_min = 3; }), none);
   EXPECT_EQ(reason_of([](S& s) { s.points_min = 2; }), out);
-  EXPECT_EQ(reason_of([](S& s) { s.tries = 1; }), none);
-  EXPECT_EQ(reason_of([](S& s) { s.tries = 0; }), out);
+  EXPECT_EQ(reason_of([](S& s) { s.candidates_max = 1; }), none);
+  EXPECT_EQ(reason_of([](S& s) { s.candidates_max = 0; }), out);
   EXPECT_EQ(reason_of([](S& s) { s.scored_max = 1; }), none);
   EXPECT_EQ(reason_of([](S& s) { s.scored_max = 0; }), out);
   EXPECT_EQ(reason_of([](S& s) { s.gate.threshold_m = 1e-30f; }), none);
@@ -345,7 +345,7 @@ TEST(Planes, TakeEachSettingAtItsLimitAndRefuseItBeyond) {
 
 // prepare() interrupts a search.
 TEST(Planes, PreparedAnewAreNoneUntilTheSearchBegins) {
-  const TestCloud cloud = cloud_of(room(1));
+  const TestCloud cloud = cloud_of(scene_points(1));
   for (const bool refused : {false, true}) {
     TestSearch used(11'000);
     used.run(cloud.points);
@@ -353,7 +353,7 @@ TEST(Planes, PreparedAnewAreNoneUntilTheSearchBegins) {
     used.search.begin(cloud.points);
     for (int i = 0; i < 60; ++i) EXPECT_FALSE(used.search.step(500));
     PlaneSettings settings;
-    settings.tries = refused ? 0 : 1;
+    settings.candidates_max = refused ? 0 : 1;
     TestMemory memory(PlaneSearch::bytes(11'000));
     EXPECT_EQ(used.search.prepare(settings, 11'000, memory.arena()),
               refused ? Reason::out_of_range : Reason::none);

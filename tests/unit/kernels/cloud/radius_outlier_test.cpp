@@ -34,7 +34,8 @@ struct TestFilter {
   int calls = 0;
 };
 
-std::vector<Point> plain(const std::vector<Point>& points, double radius, int neighbours) {
+std::vector<Point> keep_by_brute_force(const std::vector<Point>& points, double radius,
+                                       int neighbours) {
   std::vector<Point> kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
     int near = 0;
@@ -54,7 +55,7 @@ TEST(RadiusOutlier, KeepsWhatAPlainLoopKeeps) {
   TestFilter test(4'000);
   std::vector<Point> kept = test.run(points);
   std::sort(kept.begin(), kept.end());
-  EXPECT_EQ(kept, plain(points, 0.05, 9));
+  EXPECT_EQ(kept, keep_by_brute_force(points, 0.05, 9));
   EXPECT_GT(kept.size(), 200u);
   EXPECT_LT(kept.size(), 2'300u);
   EXPECT_EQ(test.filter.reason(), Reason::none);
@@ -105,7 +106,7 @@ TEST(RadiusOutlier, DropsAPointWhoseCandidatesAreUsedUpAndSaysSo) {
   few.candidates_max = 100;
   TestFilter test(2'000, few);
   EXPECT_EQ(test.run(points).size(), 1'000u);
-  EXPECT_EQ(test.filter.undecided(), 10);
+  EXPECT_EQ(test.filter.candidates_exceeded(), 10);
   EXPECT_EQ(test.filter.reason(), Reason::search_full);
 }
 
@@ -144,11 +145,11 @@ TEST(RadiusOutlier, CountsTheStepsOfEachFourCandidates) {
       for (bool done = false; !done; steps += test.filter.steps()) {
         done = test.filter.step(slice, kept.points);
       }
-      EXPECT_EQ(steps, sorting_steps(c.crowd, c.crowd) + k_lone_cell_steps +
+      EXPECT_EQ(steps, sorting_steps(c.crowd, c.crowd) + k_single_cell_steps +
                            c.crowd * (k_outlier_steps + k_candidate_steps * c.looked_at))
           << c.neighbours << " of " << c.candidates << " by " << slice;
       EXPECT_EQ(kept.points.count, c.kept ? c.crowd : 0);
-      EXPECT_EQ(test.filter.undecided(), c.undecided ? c.crowd : 0);
+      EXPECT_EQ(test.filter.candidates_exceeded(), c.undecided ? c.crowd : 0);
     }
   }
 }
@@ -164,7 +165,7 @@ TEST(RadiusOutlier, TakesNoMoreStepsThanItStatesForOnePoint) {
   while (!test.filter.step(1, kept.points) && kept.points.count == 0) {
   }
   steps = test.filter.steps();
-  EXPECT_EQ(RadiusOutlier::steps_max(settings) - steps, k_worst_cell_more);
+  EXPECT_EQ(RadiusOutlier::steps_max(settings) - steps, k_worst_cell_extra_steps);
 }
 
 TEST(RadiusOutlier, CountsANeighbourAtExactlyTheRadius) {
@@ -209,7 +210,7 @@ TEST(RadiusOutlier, CountsAnewWhenBegunAgain) {
   undecided.run(std::vector<Point>(20, Point{0, 0, 0}));
   EXPECT_EQ(undecided.filter.reason(), Reason::search_full);
   undecided.run({{0, 0, 0}});
-  EXPECT_EQ(undecided.filter.undecided(), 0);
+  EXPECT_EQ(undecided.filter.candidates_exceeded(), 0);
   EXPECT_EQ(undecided.filter.reason(), Reason::none);
 }
 

@@ -6,7 +6,7 @@ namespace glint::snap_to_planes_test {
 namespace {
 
 TEST(SnapToPlanes, MakesTheirPointsFlatAndMovesNoOther) {
-  const std::vector<Oriented> points = room(2);
+  const std::vector<PointWithNormal> points = scene_points(2);
   TestCloud cloud = cloud_of(points);
   TestSearch test(20'000);
   test.run(cloud.points);
@@ -31,7 +31,7 @@ TEST(SnapToPlanes, MakesTheirPointsFlatAndMovesNoOther) {
 
 // A point keeps its component along the plane and receives the plane's normal.
 TEST(SnapToPlanes, MovesAlongTheNormalAndGivesItToThePoint) {
-  const std::vector<Oriented> points = room(3);
+  const std::vector<PointWithNormal> points = scene_points(3);
   TestCloud cloud = cloud_of(points);
   TestSearch test(20'000);
   test.run(cloud.points);
@@ -39,7 +39,7 @@ TEST(SnapToPlanes, MovesAlongTheNormalAndGivesItToThePoint) {
             cloud.points.count);
   int moved = 0;
   for (int i = 0; i < cloud.points.count; ++i) {
-    const Oriented& before = points[static_cast<std::size_t>(i)];
+    const PointWithNormal& before = points[static_cast<std::size_t>(i)];
     const Point normal{cloud.points.normal_x[i], cloud.points.normal_y[i],
                        cloud.points.normal_z[i]};
     const std::uint8_t on = test.support.plane_of(i);
@@ -63,7 +63,7 @@ TEST(SnapToPlanes, MovesAlongTheNormalAndGivesItToThePoint) {
 }
 
 TEST(SnapToPlanes, LooksAtThePointsThatItIsAskedTo) {
-  const std::vector<Oriented> points = room(4);
+  const std::vector<PointWithNormal> points = scene_points(4);
   TestCloud cloud = cloud_of(points);
   TestSearch test(20'000);
   test.run(cloud.points);

@@ -17,7 +17,7 @@
 namespace glint::blob_fields_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 struct Finder {
   std::unique_ptr<Runs> runs = std::make_unique<Runs>();
@@ -28,7 +28,7 @@ struct Finder {
   bool everywhere = false;
   Limits limits;
 
-  BlobWork operator()(const Picture& picture) {
+  BlobWork operator()(const TestImage& picture) {
     const Frame frame = picture.frame();
     threshold_runs(frame, whole_frame(frame), settings.threshold, {}, *runs, limits);
     const Runs* bands[] = {runs.get()};
@@ -37,15 +37,15 @@ struct Finder {
 };
 
 // Returns an image of `count` isolated pixels above the threshold, 20 a row.
-Picture dots(int count) {
-  Picture p(80, 80);
+TestImage dots(int count) {
+  TestImage p(80, 80);
   for (int i = 0; i < count; ++i) p(i % 20 * 4 + 1, i / 20 * 4 + 1) = 1000;
   return p;
 }
 
 // All fields of a blob have different values, from its component and its centroid.
 TEST(Blobs, HaveTheirComponentsBoxAndTheirCentroidsFigures) {
-  Picture p(60, 50, 50);
+  TestImage p(60, 50, 50);
   for (int y = 20; y < 26; ++y)
     for (int x = 11; x < 19; ++x) p(x, y) = static_cast<std::uint16_t>(3000 + 17 * x + 5 * y);
   p(11, 20) = 60;  // outside the blob: the area differs from the box's
@@ -81,7 +81,7 @@ TEST(Blobs, AddTheirShapesVarianceAlongEachAxis) {
                         {0, 20, 5, 4, true, false},
                         {20, 0, 4, 5, false, true},
                         {0, 0, 9, 4, true, true}}) {
-    Picture p(60, 50);
+    TestImage p(60, 50);
     for (int y = c.y0; y < c.y0 + c.height; ++y)
       for (int x = c.x0; x < c.x0 + c.width; ++x) p(x, y) = 4000;
     Finder find;
@@ -99,7 +99,7 @@ TEST(Blobs, AddTheirShapesVarianceAlongEachAxis) {
 }
 
 TEST(Blobs, AreThoseOfAFreshFinderWhateverTheFrameBeforeHad) {
-  Picture few(80, 80);
+  TestImage few(80, 80);
   test::add_disc(few, 30.3, 20.6, 3, 9000);
   test::add_disc(few, 50.3, 40.6, 4, 9000);
   Finder used, fresh;
@@ -120,7 +120,7 @@ TEST(Blobs, AreThoseOfAFreshFinderWhateverTheFrameBeforeHad) {
 
 // One band's run buffer is full: either band's overflow flags the blobs as incomplete.
 TEST(Blobs, MissWhatAnyBandLost) {
-  const Picture p = dots(40);
+  const TestImage p = dots(40);
   const Frame frame = p.frame();
   for (const int full : {0, 1}) {
     std::array<std::unique_ptr<Runs>, 2> bands{std::make_unique<Runs>(), std::make_unique<Runs>()};
@@ -142,7 +142,7 @@ TEST(Blobs, MissWhatAnyBandLost) {
 TEST(Blobs, KeepThoseOfAPlainSortByDistanceAndMisfit) {
   std::mt19937 random(8);
   for (int round = 0; round < 20; ++round) {
-    Picture p(200, 200);
+    TestImage p(200, 200);
     for (int i = 0; i < 12; ++i)
       test::add_disc(p, 10 + static_cast<int>(random() % 180),
                      10 + static_cast<int>(random() % 180), 1 + static_cast<int>(random() % 5),

@@ -13,7 +13,7 @@
 namespace glint::blob_work_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 struct Finder {
   std::unique_ptr<Runs> runs = std::make_unique<Runs>();
@@ -24,7 +24,7 @@ struct Finder {
   bool everywhere = false;
   Limits limits;
 
-  BlobWork operator()(const Picture& picture) {
+  BlobWork operator()(const TestImage& picture) {
     const Frame frame = picture.frame();
     threshold_runs(frame, whole_frame(frame), settings.threshold, {}, *runs, limits);
     const Runs* bands[] = {runs.get()};
@@ -33,15 +33,15 @@ struct Finder {
 };
 
 // Returns an image of `count` isolated pixels above the threshold, 20 a row.
-Picture dots(int count) {
-  Picture p(80, 80);
+TestImage dots(int count) {
+  TestImage p(80, 80);
   for (int i = 0; i < count; ++i) p(i % 20 * 4 + 1, i / 20 * 4 + 1) = 1000;
   return p;
 }
 
 TEST(BlobWork, CountsRunsBlobsAndTheGrownBoxesPixels) {
   Finder find;
-  Picture p(100, 60);
+  TestImage p(100, 60);
   for (int y = 10; y < 14; ++y)
     for (int x = 20; x < 25; ++x) p(x, y) = 2000;
   p(0, 40) = 2000;
@@ -55,7 +55,7 @@ TEST(BlobWork, CountsRunsBlobsAndTheGrownBoxesPixels) {
 
 TEST(BlobWork, OfTwoBlobsIsTheSumOfBoth) {
   const auto work_of = [](bool left, bool right) {
-    Picture p(120, 60);
+    TestImage p(120, 60);
     if (left) test::add_disc(p, 30.2, 30.7, 4, 9000);
     if (right) test::add_disc(p, 80.4, 25.1, 6.3, 9000);
     return Finder{}(p);
@@ -70,7 +70,7 @@ TEST(BlobWork, OfTwoBlobsIsTheSumOfBoth) {
 TEST(BlobWork, CountsNoPixelsOfABoxThatIsNotWeighed) {
   for (const int side : {k_grown_box_max, k_grown_box_max + 1}) {
     for (const bool wide : {false, true}) {
-      Picture p(100, 100);
+      TestImage p(100, 100);
       for (int i = 0; i < side; ++i) (wide ? p(10 + i, 20) : p(20, 10 + i)) = 2000;
       Finder find;
       const BlobWork work = find(p);
@@ -125,7 +125,7 @@ TEST(BlobWork, KeepsAsManyAsTheLimitAndNeverMoreThanThereIsRoomFor) {
 
 // A box that costs exactly its share has the grown centroid; with one pixel less, the plain mean.
 TEST(BlobWork, PaysForABoxThatCostsJustWhatIsLeft) {
-  Picture p(40, 40);
+  TestImage p(40, 40);
   for (int y = 10; y < 14; ++y)
     for (int x = 12; x < 16; ++x) p(x, y) = 2000;
   p(12, 10) = 9000;
@@ -133,7 +133,7 @@ TEST(BlobWork, PaysForABoxThatCostsJustWhatIsLeft) {
   for (const int less : {0, 1}) {
     Finder find;
     find.limits.blobs = 1;
-    find.limits.centroid_pixels_a_blob = cost - less;
+    find.limits.centroid_pixels_per_blob = cost - less;
     const BlobWork work = find(p);
     EXPECT_EQ(work.pixels, less == 0 ? cost : 0);
     EXPECT_EQ(find.blobs->reason, less == 0 ? Reason::none : Reason::blobs_full);
@@ -150,7 +150,7 @@ TEST(BlobWork, ReachesItsMaximumAndFollowsTheLimits) {
   limits.markers_per_tool = 3;
   limits.blobs = 20;
   limits.runs_per_band = 1000;
-  limits.centroid_pixels_a_blob = 50;
+  limits.centroid_pixels_per_blob = 50;
   const BlobWork most = blob_work_max(limits);  // four bands of three rows
   EXPECT_EQ(most.runs, 4 * 3 * 15);
   EXPECT_EQ(most.distances, 45 * 7);

@@ -12,8 +12,8 @@
 namespace glint::blobs_test {
 namespace {
 
-using test::Picture;
-using test::picture_of;
+using test::image_of;
+using test::TestImage;
 
 struct Finder {
   std::unique_ptr<Runs> upper = std::make_unique<Runs>(), lower = std::make_unique<Runs>();
@@ -25,7 +25,7 @@ struct Finder {
   std::uint32_t turn = 0;
   Limits limits;
 
-  const Blobs& operator()(const Picture& picture) {
+  const Blobs& operator()(const TestImage& picture) {
     const Frame frame = picture.frame();
     const Rois all = whole_frame(frame);
     threshold_runs(frame, all, settings.threshold, {0, bands}, *upper);
@@ -39,14 +39,14 @@ struct Finder {
 
 TEST(Blobs, JoinsPixelsThatTouchByACorner) {
   Finder find;
-  EXPECT_EQ(find(picture_of({"#..", ".#.", "..#"})).count, 1);
-  EXPECT_EQ(find(picture_of({"..#", ".#.", "#.."})).count, 1);
-  EXPECT_EQ(find(picture_of({"#.#", "...", "#.#"})).count, 4);
+  EXPECT_EQ(find(image_of({"#..", ".#.", "..#"})).count, 1);
+  EXPECT_EQ(find(image_of({"..#", ".#.", "#.."})).count, 1);
+  EXPECT_EQ(find(image_of({"#.#", "...", "#.#"})).count, 4);
 }
 
 TEST(Blobs, JoinsTheTwoLegsOfAU) {
   Finder find;
-  const Blobs& blobs = find(picture_of({"#...#.#", "#...#.#", "#####.#"}));
+  const Blobs& blobs = find(image_of({"#...#.#", "#...#.#", "#####.#"}));
   ASSERT_EQ(blobs.count, 2);
   EXPECT_EQ(blobs.items[0].area_px, 9u);
   EXPECT_EQ(blobs.items[0].x0, 0);
@@ -56,7 +56,7 @@ TEST(Blobs, JoinsTheTwoLegsOfAU) {
 }
 
 TEST(Blobs, AreTheSameInOneBandAndInTwo) {
-  Picture p(100, 60);
+  TestImage p(100, 60);
   test::add_disc(p, 30.3, 29.8, 5, 9000);  // across the band border at row 30
   test::add_disc(p, 70.1, 12.4, 3, 9000);
   test::add_disc(p, 60.1, 50.4, 3, 9000);
@@ -73,7 +73,7 @@ TEST(Blobs, AreTheSameInOneBandAndInTwo) {
 }
 
 // Flood fill: a reference that does not use runs.
-std::vector<int> areas_by_flood(Picture p) {
+std::vector<int> areas_by_flood(TestImage p) {
   std::vector<int> areas;
   for (int y = 0; y < p.height; ++y) {
     for (int x = 0; x < p.width; ++x) {
@@ -104,9 +104,9 @@ TEST(Blobs, AreThoseOfAFloodFillOnRandomFrames) {
   Finder find;
   find.bands = 2;
   for (int round = 0; round < 300; ++round) {
-    Picture p(static_cast<int>(1 + random() % 40), static_cast<int>(2 + random() % 30));
+    TestImage p(static_cast<int>(1 + random() % 40), static_cast<int>(2 + random() % 30));
     const unsigned density = 1 + random() % 9;
-    for (auto& value : p.wide) value = random() % 10 < density ? 1000 : 0;
+    for (auto& value : p.pixels_16) value = random() % 10 < density ? 1000 : 0;
     const Blobs& blobs = find(p);
     std::vector<int> areas;
     for (int i = 0; i < blobs.count; ++i) {
@@ -121,7 +121,7 @@ TEST(Blobs, DropsAndCountsWhatIsOutsideTheSizeGate) {
   Finder find;
   find.settings.min_area_px = 2;
   find.settings.max_area_px = 3;
-  const Blobs& blobs = find(picture_of({"#.##.####", ".........", "###......"}));
+  const Blobs& blobs = find(image_of({"#.##.####", ".........", "###......"}));
   ASSERT_EQ(blobs.count, 2);
   EXPECT_EQ(blobs.items[0].area_px, 2u);
   EXPECT_EQ(blobs.items[1].area_px, 3u);
@@ -130,8 +130,8 @@ TEST(Blobs, DropsAndCountsWhatIsOutsideTheSizeGate) {
 }
 
 // Returns an image of 400 isolated pixels in a grid, 20 a row.
-Picture dots() {
-  Picture p(80, 80);
+TestImage dots() {
+  TestImage p(80, 80);
   for (int i = 0; i < 400; ++i) p(i % 20 * 4 + 1, i / 20 * 4 + 1) = 1000;
   return p;
 }
@@ -163,20 +163,20 @@ TEST(Blobs, KeepsOthersInAnotherFrameWhenFullAndNothingIsPredicted) {
 // size.
 TEST(Blobs, KeepsMarkersAmongAThousandSinglePixels) {
   std::mt19937 random(4);
-  Picture p(512, 512);
+  TestImage p(512, 512);
   for (int i = 0; i < 1000; ++i)
     p(static_cast<int>(random() % 512), static_cast<int>(random() % 512)) = 9000;
   for (int i = 0; i < 5; ++i) test::add_disc(p, 400.3 + 15 * i, 430.6 - 7 * (i % 2), 3, 9000);
   Finder find;
   find.settings.sizes = marker_sizes({0.0055, 0.0055, 0.8, 253, 0.15, 1.0, 0.001, 4090});
-  int whole = 0;
+  int isolated = 0;
   for (find.turn = 0; find.turn < 40; ++find.turn) {
     const Blobs& blobs = find(p);
     int markers = 0;
     for (const Blob& blob : blobs.items) markers += blob.area_px > 20 ? 1 : 0;
-    whole += markers == 5 ? 1 : 0;
+    isolated += markers == 5 ? 1 : 0;
   }
-  EXPECT_GE(whole, 20);
+  EXPECT_GE(isolated, 20);
 }
 
 TEST(Blobs, KeepsTheBlobsNearestAPredictionWhenFull) {
@@ -198,7 +198,7 @@ TEST(Blobs, KeepsTheBlobsNearestAPredictionWhenFull) {
 }
 
 TEST(Blobs, KeepsTheSizeGateBeforeAnyPrediction) {
-  Picture p = dots();
+  TestImage p = dots();
   for (int y = 40; y < 80; ++y) {
     for (int x = 0; x < 80; ++x) p(x, y) = 1000;  // a hand at the predicted marker
   }
@@ -211,7 +211,7 @@ TEST(Blobs, KeepsTheSizeGateBeforeAnyPrediction) {
 }
 
 TEST(Blobs, SurvivesACheckerboardAndPassesOnThatRunsWereLost) {
-  Picture p(512, 512);
+  TestImage p(512, 512);
   for (int y = 0; y < 512; ++y) {
     for (int x = y % 2; x < 512; x += 2) p(x, y) = 5000;
   }
@@ -223,7 +223,7 @@ TEST(Blobs, SurvivesACheckerboardAndPassesOnThatRunsWereLost) {
 }
 
 TEST(Blobs, FlagsTheBorderAndSaturation) {
-  Picture p(12, 3);
+  TestImage p(12, 3);
   p(0, 1) = 1000;
   p(5, 1) = 4000;
   p(11, 2) = 1000;
@@ -241,7 +241,7 @@ TEST(Blobs, FlagsTheBorderAndSaturation) {
 TEST(Blobs, TouchEachOfTheFourBordersOnlyInItsOutermostPixel) {
   constexpr int k_width = 21, k_height = 15, k_side = 3;
   const auto blob_at = [&](int x0, int y0) {
-    Picture p(k_width, k_height);
+    TestImage p(k_width, k_height);
     for (int i = 0; i < k_side * k_side; ++i) p(x0 + i % k_side, y0 + i / k_side) = 9000;
     Finder find;
     const Blobs& blobs = find(p);
@@ -266,19 +266,19 @@ TEST(Blobs, TouchEachOfTheFourBordersOnlyInItsOutermostPixel) {
 TEST(Blobs, ComeByRowsThenFromLeft) {
   Finder find;
   // Blobs are in the order of their boxes' (y0, x0).
-  const Blobs& blobs = find(picture_of({"...#.#", "#..#..", "##..#."}));
+  const Blobs& blobs = find(image_of({"...#.#", "#..#..", "##..#."}));
   for (int i = 1; i < blobs.count; ++i) {
     const Blob& a = blobs.items[static_cast<std::size_t>(i - 1)];
     const Blob& b = blobs.items[static_cast<std::size_t>(i)];
     EXPECT_LE(std::pair(a.y0, a.x0), std::pair(b.y0, b.x0));
   }
-  EXPECT_EQ(find(Picture(8, 8)).count, 0);
+  EXPECT_EQ(find(TestImage(8, 8)).count, 0);
 }
 
 // The second component begins further right in its first row, but its box begins further left.
 TEST(Blobs, ComeByTheirBoxesCornersNotByTheirFirstRuns) {
   Finder find;
-  const Blobs& blobs = find(picture_of({"..#..#", ".....#", "#####.", "......", "#....."}));
+  const Blobs& blobs = find(image_of({"..#..#", ".....#", "#####.", "......", "#....."}));
   ASSERT_EQ(blobs.count, 3);
   EXPECT_EQ(blobs.items[0].area_px, 7u);
   EXPECT_EQ(blobs.items[0].x0, 0);
@@ -291,26 +291,26 @@ TEST(Blobs, ComeByTheirBoxesCornersNotByTheirFirstRuns) {
 TEST(Blobs, ComeByRowsThenFromLeftInTheLargestFrame) {
   Finder find;
   find.bands = 2;
-  Picture wide(k_width_max, k_height_max);
-  const std::vector<std::pair<int, int>> places = {// row, column
+  TestImage wide(k_width_max, k_height_max);
+  const std::vector<std::pair<int, int>> pixels = {// row, column
                                                    {0, 0},     {0, 511},  {0, 513},    {0, 1023},
                                                    {1, 100},   {511, 3},  {513, 1},    {513, 1020},
                                                    {514, 100}, {1023, 0}, {1023, 1023}};
-  for (const auto& [y, x] : places) wide(x, y) = 1000;
+  for (const auto& [y, x] : pixels) wide(x, y) = 1000;
   const Blobs& blobs = find(wide);
-  ASSERT_EQ(blobs.count, static_cast<int>(places.size()));
+  ASSERT_EQ(blobs.count, static_cast<int>(pixels.size()));
   for (int i = 0; i < blobs.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    EXPECT_EQ(blobs.items[at].y0, places[at].first);
-    EXPECT_EQ(blobs.items[at].x0, places[at].second);
+    EXPECT_EQ(blobs.items[at].y0, pixels[at].first);
+    EXPECT_EQ(blobs.items[at].x0, pixels[at].second);
     EXPECT_EQ(blobs.items[at].centroid_px,
-              Vector2(places[at].second + 0.5, places[at].first + 0.5));
+              Vector2(pixels[at].second + 0.5, pixels[at].first + 0.5));
   }
 }
 
 TEST(Blobs, SayThatAnotherLiesTwoPixelsBesideThem) {
   for (const int gap : {1, 2, 3}) {
-    Picture p(60, 40);
+    TestImage p(60, 40);
     for (int y = 10; y < 16; ++y) {
       for (int x = 10; x < 16; ++x) p(x, y) = p(x + 6 + gap, y) = 9000;
     }
@@ -325,7 +325,7 @@ TEST(Blobs, SayThatAnotherLiesTwoPixelsBesideThem) {
 }
 
 TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
-  Picture p(90, 40);
+  TestImage p(90, 40);
   test::add_disc(p, 20.3, 20.6, 3, 9000);
   test::add_disc(p, 50.3, 20.6, 3, 9000);
   test::add_disc(p, 56.3, 20.6, 3, 9000);
@@ -339,7 +339,7 @@ TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
   };
   EXPECT_EQ(at(20).flags, 0);
   EXPECT_LT(at(20).variance_px2[0], 0.01F);
-  EXPECT_EQ(at(53).flags, k_blob_uneven);
+  EXPECT_EQ(at(53).flags, k_blob_partial_or_merged);
   EXPECT_GE(at(53).variance_px2[0], 9.0F);  // each disc's centre is three pixels away
   EXPECT_NE(at(89).flags & k_blob_touches_edge, 0);
   EXPECT_GT(at(89).variance_px2[0], 1.0F);
@@ -347,13 +347,13 @@ TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
 }
 
 TEST(Blobs, HaveThePlainMeanWhereThePixelsAreUsedUp) {
-  Picture picture(20, 9);
+  TestImage picture(20, 9);
   for (int i = 0; i < 12; ++i) picture(3 + i % 4, 3 + i / 4) = 600;
   picture(3, 3) = 5000;  // has the largest weight in any weighted mean
   Finder find;
   EXPECT_LT(find(picture).items[0].centroid_px.x(), 4.9);
   find.limits.blobs = 1;
-  find.limits.centroid_pixels_a_blob = 4;
+  find.limits.centroid_pixels_per_blob = 4;
   const Blobs& blobs = find(picture);
   EXPECT_EQ(blobs.reason, Reason::blobs_full);
   EXPECT_EQ(blobs.items[0].centroid_px, Vector2(5, 4.5));

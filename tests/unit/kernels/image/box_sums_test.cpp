@@ -15,12 +15,12 @@ struct Box {
 };
 
 // Per-pixel reference.
-GrownSums plain_sums(const Box& from, std::uint16_t threshold) {
+GrownSums reference_sums(const Box& from, std::uint16_t threshold) {
   GrownSums out;
   for (int row = 0; row < from.box.bottom - from.box.top; ++row) {
     const RowMasks& masks = from.masks[static_cast<std::size_t>(row)];
     const std::int64_t y = 2 * (from.box.top + row) + 1;
-    for (int column = 0; column < 8 * from.box.eights; ++column) {
+    for (int column = 0; column < 8 * from.box.column_groups; ++column) {
       const std::uint16_t value = from.pixels[static_cast<std::size_t>(64 * row + column)];
       const std::int64_t x = 2 * (from.box.left + column) + 1;
       const auto is_in = [&](std::uint64_t mask) { return (mask >> column & 1) != 0; };
@@ -70,7 +70,7 @@ TEST(BoxSums, AreThoseOfAPlainLoop) {
     Box from;
     from.box.left = static_cast<int>(random() % 400);
     from.box.top = static_cast<int>(random() % 400);
-    from.box.eights = static_cast<int>(1 + random() % 8);
+    from.box.column_groups = static_cast<int>(1 + random() % 8);
     from.box.bottom = from.box.top + static_cast<int>(1 + random() % 64);
     for (int row = from.box.top; row < from.box.bottom; ++row) {
       const std::uint64_t near = random() | random();
@@ -78,7 +78,7 @@ TEST(BoxSums, AreThoseOfAPlainLoop) {
       for (int i = 0; i < 64; ++i) from.pixels.push_back(static_cast<std::uint16_t>(random()));
     }
     const auto threshold = static_cast<std::uint16_t>(random());
-    expect_same(sums_of(from, threshold), plain_sums(from, threshold));
+    expect_same(sums_of(from, threshold), reference_sums(from, threshold));
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
 }
@@ -107,7 +107,7 @@ TEST(BoxSums, DoNotOverflow) {
       const std::uint64_t all = ~std::uint64_t{0};
       from.masks.assign(64, rim ? RowMasks{0, all} : RowMasks{all, 0});
       from.pixels.assign(64 * 64, value);
-      expect_same(sums_of(from, 0xFFFF), plain_sums(from, 0xFFFF));
+      expect_same(sums_of(from, 0xFFFF), reference_sums(from, 0xFFFF));
     }
   }
 }

@@ -14,7 +14,7 @@
 namespace glint::centroid_figures_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 constexpr std::uint16_t k_threshold = 1280;
 
@@ -31,14 +31,14 @@ struct Found {
   [[nodiscard]] const Component& component() const { return scratch->components[0]; }
 };
 
-Centroid grown(const Picture& picture, std::uint16_t threshold = k_threshold) {
+Centroid grown(const TestImage& picture, std::uint16_t threshold = k_threshold) {
   const Frame frame = picture.frame();
   const Found found(frame, threshold);
   return grown_centroid(frame, *found.scratch, found.component(), threshold);
 }
 
 // Returns whether a pixel is within `reach` of a bright one. All bright pixels belong to one blob.
-bool is_near(Picture& p, int x, int y, int reach) {
+bool is_near(TestImage& p, int x, int y, int reach) {
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
       const bool inside = x + dx >= 0 && x + dx < p.width && y + dy >= 0 && y + dy < p.height;
@@ -48,7 +48,7 @@ bool is_near(Picture& p, int x, int y, int reach) {
   return false;
 }
 
-Centroid grown_by_definition(Picture& p) {
+Centroid grown_by_definition(TestImage& p) {
   Centroid out;
   double dark = 0;
   for (int i = 0; i < p.width * p.height; ++i) {
@@ -64,11 +64,11 @@ Centroid grown_by_definition(Picture& p) {
     if (!is_near(p, x, y, 1)) continue;
     out.peak = std::max(out.peak, p(x, y));
     ++out.pixels;
-    out.light += p(x, y) - out.background;
+    out.intensity_sum += p(x, y) - out.background;
     sum += (p(x, y) - out.background) * Vector2(x + 0.5, y + 0.5);
     middle += Vector2(x + 0.5, y + 0.5);
   }
-  out.position_px = sum / out.light;
+  out.position_px = sum / out.intensity_sum;
   out.lever_px = middle - out.pixels * out.position_px;
   return out;
 }
@@ -76,8 +76,8 @@ Centroid grown_by_definition(Picture& p) {
 void expect_near(const Centroid& found, const Centroid& expected) {
   EXPECT_LT((found.position_px - expected.position_px).norm(), 1e-9);
   EXPECT_EQ(found.peak, expected.peak);
-  EXPECT_FALSE(found.beside_bright);
-  EXPECT_NEAR(found.light, expected.light, 1e-9 * expected.light);
+  EXPECT_FALSE(found.has_bright_rim);
+  EXPECT_NEAR(found.intensity_sum, expected.intensity_sum, 1e-9 * expected.intensity_sum);
   EXPECT_NEAR(found.background, expected.background, 1e-9 * expected.background);
   EXPECT_EQ(found.pixels, expected.pixels);
   EXPECT_EQ(found.dark_pixels, expected.dark_pixels);
@@ -88,8 +88,8 @@ TEST(CentroidFigures, OfAGrownBlobAreThoseOfTheDefinition) {
   std::mt19937 random(14);
   for (int round = 0; round < 100; ++round) {
     const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
-    Picture p(20 + below(60), 20 + below(30));
-    for (auto& value : p.wide) value = static_cast<std::uint16_t>(200 + random() % 300);
+    TestImage p(20 + below(60), 20 + below(30));
+    for (auto& value : p.pixels_16) value = static_cast<std::uint16_t>(200 + random() % 300);
     const int x0 = below(static_cast<unsigned>(p.width - 3)),
               y0 = below(static_cast<unsigned>(p.height - 3));
     const int x1 = std::min(x0 + 2 + below(15), p.width),
@@ -107,8 +107,8 @@ TEST(CentroidFigures, OfTheWidestBoxesAreThoseOfTheDefinitionAtEitherBorder) {
   for (int width = 60; width <= 68; ++width) {
     for (int side = 56; side <= std::min(width, k_grown_box_max); ++side) {
       for (const int x0 : {0, (width - side) / 2, width - side}) {
-        Picture p(width, 9);
-        for (auto& value : p.wide) value = static_cast<std::uint16_t>(200 + random() % 300);
+        TestImage p(width, 9);
+        for (auto& value : p.pixels_16) value = static_cast<std::uint16_t>(200 + random() % 300);
         for (int x = x0; x < x0 + side; ++x)
           p(x, 4) = static_cast<std::uint16_t>(5000 + random() % 3000);
         expect_near(grown(p), grown_by_definition(p));
@@ -123,7 +123,7 @@ TEST(CentroidFigures, OfTheWidestBoxesAreThoseOfTheDefinitionAtEitherBorder) {
 TEST(CentroidFigures, FallBackWhereTheMiddleLeavesTheBoxOnAnySide) {
   for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
     for (const int contrast : {2, 3, 4}) {
-      Picture p(9, 9, 1280);
+      TestImage p(9, 9, 1280);
       p(4, 4) = static_cast<std::uint16_t>(1280 + contrast);
       p(4 + dx, 4 + dy) = 1279;
       const Centroid found = grown(p);
@@ -136,7 +136,7 @@ TEST(CentroidFigures, FallBackWhereTheMiddleLeavesTheBoxOnAnySide) {
           << dx << dy << contrast;
       EXPECT_EQ(found.pixels, inside ? 9 : 0);
       EXPECT_EQ(found.dark_pixels, inside ? 16 : 0);
-      EXPECT_EQ(found.light, inside ? contrast - 1 : 0);
+      EXPECT_EQ(found.intensity_sum, inside ? contrast - 1 : 0);
       EXPECT_EQ(found.background, inside ? 1280 : 0);
       EXPECT_EQ(found.peak, 1280 + contrast);
     }
@@ -146,7 +146,7 @@ TEST(CentroidFigures, FallBackWhereTheMiddleLeavesTheBoxOnAnySide) {
 // The sum of weights is zero, and slightly negative.
 TEST(CentroidFigures, FallBackWhereTheBlobIsNoBrighterThanItsSurroundings) {
   for (const int darker : {1279, 1278}) {
-    Picture p(9, 9, 1280);
+    TestImage p(9, 9, 1280);
     p(4, 4) = 1281;
     p(3, 3) = static_cast<std::uint16_t>(darker);
     const Centroid found = grown(p);
@@ -157,25 +157,25 @@ TEST(CentroidFigures, FallBackWhereTheBlobIsNoBrighterThanItsSurroundings) {
 }
 
 TEST(CentroidFigures, KeepPeakAndNeighbourWhereTheyFallBack) {
-  Picture p(16, 9, 1280);
+  TestImage p(16, 9, 1280);
   p(4, 4) = 1281;
   p(3, 3) = 0;
   p(6, 4) = 1290;  // another blob, two pixels away
   const Centroid found = grown(p);
   EXPECT_EQ(found.pixels, 0);
-  EXPECT_TRUE(found.beside_bright);
+  EXPECT_TRUE(found.has_bright_rim);
   EXPECT_EQ(found.peak, 1281);
 }
 
 TEST(CentroidFigures, OfTheWeightedMeanAreThoseOfItsDefinition) {
   std::mt19937 random(16);
   for (int round = 0; round < 60; ++round) {
-    Picture p(30, 20);
+    TestImage p(30, 20);
     for (int y = 5; y < 9; ++y)
       for (int x = 7; x < 7 + 3 + round % 5; ++x)
         p(x, y) = static_cast<std::uint16_t>(201 + random() % (round % 2 == 0 ? 3 : 50));
     for (const bool narrow : {false, true}) {
-      const Picture seen = narrow ? p.with_8_bits() : p;
+      const TestImage seen = narrow ? p.with_8_bits() : p;
       const Frame frame = seen.frame();
       const Found found(frame, 200);
       const Centroid centroid = weighted_centroid(frame, *found.scratch, found.component(), 200);
@@ -184,7 +184,7 @@ TEST(CentroidFigures, OfTheWeightedMeanAreThoseOfItsDefinition) {
       int peak = 0;
       for (int y = 0; y < p.height; ++y) {
         for (int x = 0; x < p.width; ++x) {
-          const int value = narrow ? seen.narrow[seen.at(x, y)] : p(x, y);
+          const int value = narrow ? seen.pixels_8[seen.at(x, y)] : p(x, y);
           if (value <= 200) continue;
           weights += value - 200;
           sum += (value - 200) * Vector2(x + 0.5, y + 0.5);
@@ -200,7 +200,7 @@ TEST(CentroidFigures, OfTheWeightedMeanAreThoseOfItsDefinition) {
 
 // The threshold equals the blob's level or is above it.
 TEST(CentroidFigures, OfTheWeightedMeanAreNoneWithoutWeight) {
-  Picture p(9, 9);
+  TestImage p(9, 9);
   p(3, 3) = p(4, 3) = 1000;
   const Frame frame = p.frame();
   const Found found(frame, 500);
@@ -216,7 +216,7 @@ TEST(CentroidFigures, OfTheWeightedMeanAreNoneWithoutWeight) {
 // The peak of a run is searched at its ends and its centre.
 TEST(CentroidFigures, OfThePlainMeanAreTheMeanAndTheBrightestOfEachRunsEndsAndMiddle) {
   for (const int brightest : {0, 1, 2, 3, 4, 5, 6, 7, 8}) {
-    Picture p(40, 20);
+    TestImage p(40, 20);
     for (int x = 0; x < 9; ++x) p(10 + x, 6) = 600;
     for (int x = 0; x < 4; ++x) p(12 + x, 7) = 601;
     p(10 + brightest, 6) = 900;
@@ -232,9 +232,9 @@ TEST(CentroidFigures, OfThePlainMeanAreTheMeanAndTheBrightestOfEachRunsEndsAndMi
 }
 
 TEST(CentroidFigures, OfThePlainMeanAreTheSameFromEightBits) {
-  Picture p(40, 20);
+  TestImage p(40, 20);
   for (int x = 0; x < 9; ++x) p(10 + x, 6) = static_cast<std::uint16_t>(100 + 10 * x);
-  const Picture narrow = p.with_8_bits();
+  const TestImage narrow = p.with_8_bits();
   const Found a(p.frame(), 50), b(narrow.frame(), 50);
   const Centroid wide = binary_centroid(p.frame(), *a.scratch, a.component());
   const Centroid small = binary_centroid(narrow.frame(), *b.scratch, b.component());
@@ -246,7 +246,7 @@ TEST(CentroidFigures, OfThePlainMeanAreTheSameFromEightBits) {
 // A box that is too large along one axis only.
 TEST(CentroidFigures, OfATallOrWideBoxAreThePlainMeans) {
   for (const bool tall : {false, true}) {
-    Picture p(100, 100, 100);
+    TestImage p(100, 100, 100);
     for (int i = 0; i <= k_grown_box_max; ++i)
       (tall ? p(20, 10 + i) : p(10 + i, 20)) = static_cast<std::uint16_t>(2000 + 50 * i);
     const double middle = 10 + 0.5 * (k_grown_box_max + 1);

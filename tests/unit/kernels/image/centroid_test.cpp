@@ -11,7 +11,7 @@
 namespace glint::centroid_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 constexpr std::uint16_t k_threshold = 1280;
 
@@ -38,8 +38,8 @@ Errors errors_of(double diameter, double brightness, int rounds) {
   std::uniform_real_distribution<double> part(0, 1);
   Errors sum;
   for (int i = 0; i < rounds; ++i) {
-    Picture p(40, 40);
-    for (auto& value : p.wide) value = static_cast<std::uint16_t>(200 + random() % 20);
+    TestImage p(40, 40);
+    for (auto& value : p.pixels_16) value = static_cast<std::uint16_t>(200 + random() % 20);
     const Vector2 truth{18 + part(random), 18 + part(random)};
     test::add_disc(p, truth.x(), truth.y(), diameter / 2, brightness);
     const Frame frame = p.frame();
@@ -68,7 +68,7 @@ TEST(Centroids, OfDiscsAreGoodToThreeHundredthsOfAPixel) {
 }
 
 TEST(Centroids, OfASymmetricBlobAreItsMiddleExactly) {
-  Picture p(9, 9, 100);
+  TestImage p(9, 9, 100);
   for (int y = 3; y < 6; ++y) {
     for (int x = 2; x < 7; ++x) p(x, y) = 3000;
   }
@@ -84,7 +84,7 @@ TEST(Centroids, OfASymmetricBlobAreItsMiddleExactly) {
 TEST(Centroids, DoNotMoveWithTheBackground) {
   std::vector<Vector2> positions;
   for (const std::uint16_t background : {0, 500, 1000}) {
-    Picture p(30, 30, background);
+    TestImage p(30, 30, background);
     test::add_disc(p, 14.3, 15.8, 3, 9000);
     const Frame frame = p.frame();
     const Found found(frame);
@@ -98,7 +98,7 @@ TEST(Centroids, DoNotMoveWithTheBackground) {
 TEST(Centroids, MoveByTheSameWholePixelsAsTheDisc) {
   Vector2 first = Vector2::Zero();
   for (int shift = 0; shift < 5; ++shift) {
-    Picture p(40, 40, 150);
+    TestImage p(40, 40, 150);
     test::add_disc(p, 12.25 + shift, 13.75 + 2 * shift, 3.5, 9000);
     const Frame frame = p.frame();
     const Found found(frame);
@@ -111,7 +111,7 @@ TEST(Centroids, MoveByTheSameWholePixelsAsTheDisc) {
 
 TEST(Centroids, StayInsideTheFrameAtItsCorners) {
   for (const Vector2& corner : {Vector2(0, 0), Vector2(20, 0), Vector2(0, 20), Vector2(20, 20)}) {
-    Picture p(20, 20, 150);
+    TestImage p(20, 20, 150);
     test::add_disc(p, corner.x(), corner.y(), 3.5, 9000);
     const Frame frame = p.frame();
     const Found found(frame);
@@ -123,7 +123,7 @@ TEST(Centroids, StayInsideTheFrameAtItsCorners) {
 }
 
 TEST(Centroids, OfALargeBoxAreThePlainMean) {
-  Picture wide(200, 20, 0);
+  TestImage wide(200, 20, 0);
   for (int x = 10; x < 110; ++x) wide(x, 7) = static_cast<std::uint16_t>(2000 + 50 * x);
   const Frame frame = wide.frame();
   const Found found(frame);
@@ -133,7 +133,7 @@ TEST(Centroids, OfALargeBoxAreThePlainMean) {
 }
 
 TEST(Centroids, OfTheLargestGrownBoxAreRight) {
-  Picture p(66, 66, 0);
+  TestImage p(66, 66, 0);
   for (int y = 3; y < 3 + k_grown_box_max; ++y) {
     for (int x = 3; x < 3 + k_grown_box_max; ++x) p(x, y) = 0xFFFF;
   }
@@ -144,7 +144,7 @@ TEST(Centroids, OfTheLargestGrownBoxAreRight) {
 }
 
 // The definition, pixel by pixel. All bright pixels belong to one blob.
-Vector2 plain_grown_centroid(Picture& p) {
+Vector2 plain_grown_centroid(TestImage& p) {
   const auto near = [&](int x, int y, int reach) {
     for (int dy = -reach; dy <= reach; ++dy) {
       for (int dx = -reach; dx <= reach; ++dx) {
@@ -177,8 +177,8 @@ TEST(Centroids, AreThoseOfTheDefinitionInFramesOfAnyWidth) {
   std::mt19937 random(4);
   for (int round = 0; round < 200; ++round) {
     const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
-    Picture p(6 + below(80), 6 + below(40));
-    for (auto& value : p.wide) value = static_cast<std::uint16_t>(200 + random() % 300);
+    TestImage p(6 + below(80), 6 + below(40));
+    for (auto& value : p.pixels_16) value = static_cast<std::uint16_t>(200 + random() % 300);
     const int x0 = below(static_cast<unsigned>(p.width - 3)),
               y0 = below(static_cast<unsigned>(p.height - 3));
     const int x1 = std::min(x0 + 2 + below(40), p.width),
@@ -196,7 +196,7 @@ TEST(Centroids, AreThoseOfTheDefinitionInFramesOfAnyWidth) {
 
 // The surroundings are as bright as the blob: the sum of weights is zero.
 TEST(Centroids, FallBackToThePlainMeanWithoutContrast) {
-  Picture p(9, 9, 1280);
+  TestImage p(9, 9, 1280);
   p(4, 4) = 1281;
   p(3, 3) = 0;
   p(3, 4) = 0;
@@ -209,9 +209,9 @@ TEST(Centroids, FallBackToThePlainMeanWithoutContrast) {
 }
 
 TEST(Centroids, AreTheSameFromEightAndFromSixteenBits) {
-  Picture p(30, 30, 20);
+  TestImage p(30, 30, 20);
   test::add_disc(p, 14.3, 15.8, 3, 200);
-  const Picture narrow = p.with_8_bits();
+  const TestImage narrow = p.with_8_bits();
   const Frame wide_frame = p.frame(), narrow_frame = narrow.frame();
   const Found a(wide_frame, 100), b(narrow_frame, 100);
   EXPECT_EQ(grown_centroid(wide_frame, *a.scratch, a.component(), 100).position_px,

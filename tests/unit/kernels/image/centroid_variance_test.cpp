@@ -13,14 +13,14 @@
 namespace glint::centroid_variance_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 // A disc of 6 px: 28 pixels of 10,000 counts over a background of 100.
 Centroid disc_of_light(double signal = 10'000) {
   Centroid c;
   c.position_px = {20, 20};
   c.peak = static_cast<std::uint16_t>(signal + 100);
-  c.light = 28 * signal;
+  c.intensity_sum = 28 * signal;
   c.background = 100;
   c.pixels = 60;
   c.dark_pixels = 32;
@@ -74,7 +74,7 @@ TEST(CentroidVariance, GrowsWhereTheRimIsClipped) {
   const auto unclipped_variance =
       centroid_variance(disc_of_light(60'000), box_of_disc(), k_settings);
   const auto least = centroid_variance(clipped, box_of_disc(), k_settings);
-  clipped.light = 37 * 65'435.0;  // nearly all of 38 pixels are full
+  clipped.intensity_sum = 37 * 65'435.0;  // nearly all of 38 pixels are full
   const auto most = centroid_variance(clipped, box_of_disc(), k_settings);
   EXPECT_GT(least[0], 20 * unclipped_variance[0]);
   EXPECT_GT(most[0], 3 * least[0]);
@@ -84,7 +84,7 @@ TEST(CentroidVariance, GrowsWhereTheRimIsClipped) {
 TEST(CentroidVariance, HoldsTheLightOfANeighbour) {
   Centroid beside = disc_of_light();
   const auto alone = centroid_variance(beside, box_of_disc(), k_settings);
-  beside.beside_bright = true;
+  beside.has_bright_rim = true;
   const auto pulled = centroid_variance(beside, box_of_disc(), k_settings);
   EXPECT_NEAR(std::sqrt(pulled[0] - alone[0]), 3 * 900 * 4.5 / 28e4, 1e-4);
 }
@@ -97,11 +97,11 @@ TEST(CentroidVariance, OfThePlainMeanIsThatOfAFullRim) {
 }
 
 TEST(CentroidVariance, KnowsABoxThatIsNoDiscs) {
-  EXPECT_FALSE(is_uneven(box_of_disc(7, 7)));
-  EXPECT_FALSE(is_uneven(box_of_disc(7, 5)));   // 4 px, motion blur of 2
-  EXPECT_FALSE(is_uneven(box_of_disc(12, 8)));  // 7 px, motion blur of 4
-  EXPECT_TRUE(is_uneven(box_of_disc(9, 5)));    // two of 4 px
-  EXPECT_TRUE(is_uneven(box_of_disc(7, 13)));
+  EXPECT_FALSE(is_partial_or_merged(box_of_disc(7, 7)));
+  EXPECT_FALSE(is_partial_or_merged(box_of_disc(7, 5)));   // 4 px, motion blur of 2
+  EXPECT_FALSE(is_partial_or_merged(box_of_disc(12, 8)));  // 7 px, motion blur of 4
+  EXPECT_TRUE(is_partial_or_merged(box_of_disc(9, 5)));    // two of 4 px
+  EXPECT_TRUE(is_partial_or_merged(box_of_disc(7, 13)));
   const auto merged = shape_variance(box_of_disc(13, 7), false, false);
   EXPECT_EQ(merged[0], 9.0F);
   const auto cut = shape_variance(box_of_disc(5, 7), true, false);
@@ -120,11 +120,11 @@ TEST(CentroidVariance, IsANumberForAnyBlob) {
     Centroid c;
     c.peak = static_cast<std::uint16_t>(any(0, 65535));
     c.background = any(0, 65535);
-    c.light = any(1.0 / 4096, 65535.0 * 4096);
+    c.intensity_sum = any(1.0 / 4096, 65535.0 * 4096);
     c.pixels = static_cast<std::int32_t>(any(0, 4096));
     c.dark_pixels = static_cast<std::int32_t>(any(1, 4096));
     c.lever_px = {any(-3e5, 3e5), any(-3e5, 3e5)};
-    c.beside_bright = round % 2 == 0;
+    c.has_bright_rim = round % 2 == 0;
     Component component = box_of_disc(static_cast<int>(any(1, 400)), static_cast<int>(any(1, 400)));
     component.area_px = static_cast<std::uint32_t>(any(1, 262144));
     BlobSettings settings = k_settings;
@@ -156,10 +156,10 @@ TEST(CentroidVariance, IsTheSquaredErrorsMean) {
     std::uniform_real_distribution<double> part(0, 1);
     double squares = 0, variances = 0;
     for (int round = 0; round < 400; ++round) {
-      Picture p(40, 40, 1000);
+      TestImage p(40, 40, 1000);
       const Vector2 truth{18 + part(random), 18 + part(random)};
       test::add_disc(p, truth.x(), truth.y(), 2.5 + part(random), 8000);
-      for (auto& value : p.wide) {  // a mean of twelve uniform numbers is nearly Gaussian
+      for (auto& value : p.pixels_16) {  // a mean of twelve uniform numbers is nearly Gaussian
         double sum = -6;
         for (int i = 0; i < 12; ++i) sum += part(random);
         value = static_cast<std::uint16_t>(std::max(value + noise * sum + 0.5, 0.0));

@@ -13,7 +13,7 @@
 namespace glint::components_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 struct Found {
   std::array<std::unique_ptr<Runs>, k_row_bands + 1> runs;
@@ -22,7 +22,7 @@ struct Found {
   Found() {
     for (auto& band : runs) band = std::make_unique<Runs>();
   }
-  void find(const Picture& picture, int bands, int runs_per_band = k_runs_per_band_max) {
+  void find(const TestImage& picture, int bands, int runs_per_band = k_runs_per_band_max) {
     const Frame frame = picture.frame();
     std::vector<const Runs*> list;
     for (int band = 0; band < bands; ++band) {
@@ -35,7 +35,7 @@ struct Found {
 };
 
 // Flood fill, a reference without runs: left, top, right, bottom and area of each component.
-std::vector<std::array<int, 5>> boxes_by_flood(Picture p) {
+std::vector<std::array<int, 5>> boxes_by_flood(TestImage p) {
   std::vector<std::array<int, 5>> boxes;
   for (int y = 0; y < p.height; ++y) {
     for (int x = 0; x < p.width; ++x) {
@@ -66,9 +66,9 @@ TEST(Components, HaveTheBoxesAreasAndRunsOfAFloodFill) {
   std::mt19937 random(11);
   Found found;
   for (int round = 0; round < 300; ++round) {
-    Picture p(static_cast<int>(1 + random() % 40), static_cast<int>(4 + random() % 30));
+    TestImage p(static_cast<int>(1 + random() % 40), static_cast<int>(4 + random() % 30));
     const unsigned density = 1 + random() % 9;
-    for (auto& value : p.wide) value = random() % 10 < density ? 1000 : 0;
+    for (auto& value : p.pixels_16) value = random() % 10 < density ? 1000 : 0;
     found.find(p, 1 + round % k_row_bands);
     const BlobScratch& scratch = *found.scratch;
     const auto expected = boxes_by_flood(p);
@@ -91,7 +91,7 @@ TEST(Components, HaveTheBoxesAreasAndRunsOfAFloodFill) {
 }
 
 TEST(Components, ReadNoMoreBandsAndRunsThanThereAre) {
-  Picture p(9, 10);
+  TestImage p(9, 10);
   for (int y = 0; y < 10; y += 2)
     for (int x = 0; x < 9; x += 2) p(x, y) = 1000;
   Found found;
@@ -118,7 +118,7 @@ TEST(GrownBox, HoldsTheBlobAndTwoPixelsAroundIt) {
   std::mt19937 random(12);
   for (int round = 0; round < 2000; ++round) {
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-    const Picture p(1 + below(90), 1 + below(90));
+    const TestImage p(1 + below(90), 1 + below(90));
     Component c;
     c.x0 = static_cast<std::uint16_t>(below(p.width));
     c.y0 = static_cast<std::uint16_t>(below(p.height));
@@ -128,17 +128,17 @@ TEST(GrownBox, HoldsTheBlobAndTwoPixelsAroundIt) {
     const int begin = std::max(c.x0 - 2, 0), end = std::min(c.x1 + 2, p.width);
     EXPECT_GE(box.left, 0);
     EXPECT_LE(box.left, begin);
-    EXPECT_GE(box.left + 8 * box.eights, end);
-    EXPECT_LT(8 * (box.eights - 1), end - begin) << "no eight too many";
-    if (p.width >= 8 * box.eights) {
-      EXPECT_LE(box.left + 8 * box.eights, p.width);
-      EXPECT_EQ(box.left, std::min(begin, p.width - 8 * box.eights));
+    EXPECT_GE(box.left + 8 * box.column_groups, end);
+    EXPECT_LT(8 * (box.column_groups - 1), end - begin) << "no eight too many";
+    if (p.width >= 8 * box.column_groups) {
+      EXPECT_LE(box.left + 8 * box.column_groups, p.width);
+      EXPECT_EQ(box.left, std::min(begin, p.width - 8 * box.column_groups));
     } else {
       EXPECT_EQ(box.left, 0);
     }
     EXPECT_EQ(box.top, std::max(c.y0 - 2, 0));
     EXPECT_EQ(box.bottom, std::min(c.y1 + 2, p.height));
-    EXPECT_EQ(box.pixels(), (box.bottom - box.top) * (8 * box.eights + 8));
+    EXPECT_EQ(box.pixels(), (box.bottom - box.top) * (8 * box.column_groups + 8));
     ASSERT_FALSE(HasFailure()) << round;
   }
 }

@@ -12,7 +12,7 @@
 namespace glint::limits_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 struct Found {
   std::unique_ptr<Runs> runs = std::make_unique<Runs>();
@@ -20,7 +20,7 @@ struct Found {
   std::unique_ptr<Blobs> blobs = std::make_unique<Blobs>();
   BlobWork work;
 
-  Found(const Picture& picture, const Limits& limits) {
+  Found(const TestImage& picture, const Limits& limits) {
     const Frame frame = picture.frame();
     threshold_runs(frame, whole_frame(frame), 500, {0, 1}, *runs, limits);
     const Runs* bands[] = {runs.get()};
@@ -28,8 +28,8 @@ struct Found {
   }
 };
 
-Picture squares(int side, int pitch) {
-  Picture p(512, 512, 100);
+TestImage squares(int side, int pitch) {
+  TestImage p(512, 512, 100);
   for (int y = 0; y < 512; ++y) {
     for (int x = 0; x < 512; ++x) {
       if (x % pitch >= 4 && x % pitch < 4 + side && y % pitch >= 4 && y % pitch < 4 + side) {
@@ -59,7 +59,7 @@ TEST(ImageLimits, RefuseALargerFrame) {
 }
 
 TEST(ImageLimits, TurnTooManyRoisIntoTheWholeFrame) {
-  Picture p(64, 1);
+  TestImage p(64, 1);
   p(60, 0) = 1000;
   Rois rois;
   rois.count = 3;
@@ -75,21 +75,21 @@ TEST(ImageLimits, TurnTooManyRoisIntoTheWholeFrame) {
 // A blob within its share of the pixel budget has the same centroid as without a limit. Larger
 // blobs fall back to the plain mean.
 TEST(ImageLimits, LeaveSmallBlobsTheirCentroidsWhenLargeOnesComeFirst) {
-  Picture p(512, 512, 100);
+  TestImage p(512, 512, 100);
   for (int i = 0; i < 8; ++i) test::add_disc(p, 60.3 * i + 40, 40.2, 12, 9000);
   for (int i = 0; i < 8; ++i) test::add_disc(p, 60.3 * i + 40, 200.2, 5, 9000);
   Limits limits;
   limits.blobs = 16;
-  const Found all(p, Limits{}), few(p, limits);
+  const Found all(p, Limits{}), limited(p, limits);
   ASSERT_EQ(all.blobs->count, 16);
-  ASSERT_EQ(few.blobs->count, 16);
+  ASSERT_EQ(limited.blobs->count, 16);
   EXPECT_EQ(all.blobs->reason, Reason::none);
-  EXPECT_EQ(few.blobs->reason, Reason::blobs_full);
-  EXPECT_LE(few.work.pixels, limits.blobs * limits.centroid_pixels_a_blob);
+  EXPECT_EQ(limited.blobs->reason, Reason::blobs_full);
+  EXPECT_LE(limited.work.pixels, limits.blobs * limits.centroid_pixels_per_blob);
   for (std::size_t i = 8; i < 16; ++i) {
-    EXPECT_EQ(few.blobs->items[i].centroid_px, all.blobs->items[i].centroid_px);
+    EXPECT_EQ(limited.blobs->items[i].centroid_px, all.blobs->items[i].centroid_px);
   }
-  EXPECT_LT((few.blobs->items[0].centroid_px - all.blobs->items[0].centroid_px).norm(), 0.2);
+  EXPECT_LT((limited.blobs->items[0].centroid_px - all.blobs->items[0].centroid_px).norm(), 0.2);
 }
 
 TEST(MergeSort, SortsAsTheStandardOneDoes) {

@@ -203,19 +203,19 @@ TEST(MarkerMisfit, CountsABoxThatIsLessThanHalfFull) {
 
 // Contrast is the level of the centre pixel alone, for 16-bit and for 8-bit frames.
 TEST(MarkerMisfit, ReadsTheContrastInTheMiddle) {
-  for (const bool dim : {false, true}) {
+  for (const bool low_contrast : {false, true}) {
     Scene scene;
     scene.settings.sizes.known = false;
     scene.settings.threshold = 100;
     scene.of(40, 6, 7);  // centre: column 22, row 23
-    const std::uint16_t middle = dim ? 199 : 200, around = dim ? 200 : 199;
+    const std::uint16_t middle = low_contrast ? 199 : 200, around = low_contrast ? 200 : 199;
     scene.level.assign(scene.level.size(), around);
     scene.level[static_cast<std::size_t>(64 * 23 + 22)] = middle;
-    EXPECT_EQ(scene.misfit(), dim ? 1 : 0);
+    EXPECT_EQ(scene.misfit(), low_contrast ? 1 : 0);
     const std::vector<std::uint8_t> narrow(scene.level.begin(), scene.level.end());
     Frame frame;
     frame.reflectivity_8 = {narrow.data(), 64, 64};
-    EXPECT_EQ(marker_misfit(frame, scene.component, scene.settings), dim ? 1 : 0);
+    EXPECT_EQ(marker_misfit(frame, scene.component, scene.settings), low_contrast ? 1 : 0);
   }
 }
 

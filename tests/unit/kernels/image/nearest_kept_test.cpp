@@ -37,11 +37,11 @@ struct Candidates {
   std::vector<int> keep(const BlobSearch& search, int kept) {
     std::iota(scratch->candidate.begin(), scratch->candidate.begin() + count, std::uint16_t{0});
     std::copy(misfits.begin(), misfits.end(), scratch->misfit.begin());
-    (void)keep_nearest(search, *scratch, count, kept);
+    (void)select_nearest(search, *scratch, count, kept);
     return {scratch->candidate.begin(), scratch->candidate.begin() + kept};
   }
 
-  [[nodiscard]] Vector2 middle(int i) const {
+  [[nodiscard]] Vector2 centre(int i) const {
     const Component& c = scratch->components[static_cast<std::size_t>(i)];
     return {0.5 * (c.x0 + c.x1), 0.5 * (c.y0 + c.y1)};
   }
@@ -126,7 +126,7 @@ TEST(NearestKept, ShareTheBudgetBetweenPredictionsAndTheFocus) {
     const std::vector<int> near = expected;
     for (int n = 1; static_cast<int>(expected.size()) < kept; ++n) {
       expected = near;
-      for (const int i : candidates.sorted({candidates.middle(focus)}, n))
+      for (const int i : candidates.sorted({candidates.centre(focus)}, n))
         if (!std::binary_search(near.begin(), near.end(), i)) expected.push_back(i);
     }
     std::sort(expected.begin(), expected.end());
@@ -180,7 +180,7 @@ TEST(NearestKept, CountNonsenseAsNoPrediction) {
   const Vector2 nowhere(std::numeric_limits<double>::quiet_NaN(), 0);
   EXPECT_EQ(candidates.keep(BlobSearch{}, 3), (std::vector<int>{0, 1, 2})) << "turn 0";
   EXPECT_EQ(candidates.keep({nowhere, {1e300, 0}}, 3), (std::vector<int>{0, 1, 2}));
-  EXPECT_EQ(keep_nearest({}, *candidates.scratch, candidates.count, 3), (30 + 3) / 4);
+  EXPECT_EQ(select_nearest({}, *candidates.scratch, candidates.count, 3), (30 + 3) / 4);
 }
 
 // The corner opposite to a prediction outside the frame.
@@ -201,7 +201,8 @@ TEST(NearestKept, LookAtNoMorePredictionsThanToolsHaveMarkers) {
   Candidates candidates;
   for (int i = 0; i < 8; ++i) candidates.add(i < 4 ? 399 : 60, 399);
   EXPECT_EQ(candidates.keep(predicted, 4), (std::vector<int>{4, 5, 6, 7}));
-  EXPECT_EQ(keep_nearest({predicted, false, 0}, *candidates.scratch, 5, 4), 2 * k_predictions_max);
+  EXPECT_EQ(select_nearest({predicted, false, 0}, *candidates.scratch, 5, 4),
+            2 * k_predictions_max);
   predicted.erase(predicted.begin());
   Candidates again;
   for (int i = 0; i < 8; ++i) again.add(i < 4 ? 399 : 60, 399);
@@ -210,7 +211,7 @@ TEST(NearestKept, LookAtNoMorePredictionsThanToolsHaveMarkers) {
 
 TEST(NearestKept, ShareOfThePredictionsIsHalfOrOneEachOrAll) {
   const auto share = [](bool everywhere, int predictions, int kept) {
-    return kept_near_predictions({{}, everywhere, 0}, predictions, kept);
+    return budget_near_predictions({{}, everywhere, 0}, predictions, kept);
   };
   EXPECT_EQ(share(true, 0, 64), 0);
   EXPECT_EQ(share(false, 0, 64), 0) << "nothing is predicted";
@@ -231,8 +232,9 @@ TEST(NearestKept, CountFourDistancesToEachPredictionAndTheFocus) {
       for (int i = 0; i < count; ++i) candidates.add(10 * i, 5);
       candidates.keep({predicted, everywhere, 0}, 8);
       const BlobSearch search{predicted, everywhere, 0};
-      EXPECT_EQ(keep_nearest(search, *candidates.scratch, count, 8), fours * (everywhere ? 6 : 5));
-      EXPECT_EQ(keep_nearest(search, *candidates.scratch, count, 5), fours * 5)
+      EXPECT_EQ(select_nearest(search, *candidates.scratch, count, 8),
+                fours * (everywhere ? 6 : 5));
+      EXPECT_EQ(select_nearest(search, *candidates.scratch, count, 5), fours * 5)
           << "the predictions have the whole budget";
     }
   }

@@ -84,10 +84,10 @@ TEST(MarkerSizes, AreUnknownForEachFigureThatIsNone) {
        {&MarkerOptics::radius_min_m, &MarkerOptics::radius_max_m, &MarkerOptics::range_min_m,
         &MarkerOptics::range_max_m, &MarkerOptics::focal_px, &MarkerOptics::depth_unit_m}) {
     for (const double none : {0.0, -1.0, k_none}) {
-      MarkerOptics spoiled = optics();
-      spoiled.*figure = none;
-      EXPECT_FALSE(marker_sizes(spoiled).known) << none;
-      EXPECT_EQ(marker_sizes(spoiled).by_depth[20].max_area_px, 0u);
+      MarkerOptics invalid = optics();
+      invalid.*figure = none;
+      EXPECT_FALSE(marker_sizes(invalid).known) << none;
+      EXPECT_EQ(marker_sizes(invalid).by_depth[20].max_area_px, 0u);
     }
   }
   MarkerOptics alike = optics();

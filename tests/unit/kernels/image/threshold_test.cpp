@@ -8,8 +8,8 @@
 namespace glint::threshold_test {
 namespace {
 
-using test::Picture;
-using test::picture_of;
+using test::image_of;
+using test::TestImage;
 
 std::vector<std::array<int, 3>> runs_of(const Frame& frame, const Rois& rois, int threshold,
                                         RowBand band = {}) {
@@ -26,24 +26,24 @@ std::vector<std::array<int, 3>> runs_of(const Frame& frame, const Rois& rois, in
 using List = std::vector<std::array<int, 3>>;
 
 TEST(Threshold, WritesRunsByRowsFromLeftToRight) {
-  const Picture p = picture_of({"##..#", ".....", "..###"});
+  const TestImage p = image_of({"##..#", ".....", "..###"});
   EXPECT_EQ(runs_of(p.frame(), whole_frame(p.frame()), 999),
             (List{{0, 0, 2}, {0, 4, 5}, {2, 2, 5}}));
 }
 
 TEST(Threshold, TakesOnlyWhatIsAboveTheThreshold) {
-  Picture p(4, 1);
+  TestImage p(4, 1);
   p(1, 0) = 250;
   p(2, 0) = 251;
   EXPECT_EQ(runs_of(p.frame(), whole_frame(p.frame()), 250), (List{{0, 2, 3}}));
-  const Picture narrow = p.with_8_bits();
+  const TestImage narrow = p.with_8_bits();
   EXPECT_EQ(runs_of(narrow.frame(), whole_frame(narrow.frame()), 250), (List{{0, 2, 3}}));
   EXPECT_TRUE(runs_of(narrow.frame(), whole_frame(narrow.frame()), 255).empty());
   EXPECT_TRUE(runs_of(narrow.frame(), whole_frame(narrow.frame()), 5000).empty());
 }
 
 TEST(Threshold, SeesTheHighestValuesOfSixteenBits) {
-  Picture p(40, 1);
+  TestImage p(40, 1);
   p(3, 0) = 0x8000;
   p(35, 0) = 0xFFFF;
   const Rois all = whole_frame(p.frame());
@@ -53,7 +53,7 @@ TEST(Threshold, SeesTheHighestValuesOfSixteenBits) {
 }
 
 TEST(Threshold, JoinsRunsAcrossTheBorderOfTwoRois) {
-  const Picture p = picture_of({"########"});
+  const TestImage p = image_of({"########"});
   Rois rois;
   rois.items[0] = {4, 0, 6, 1};  // not in order
   rois.items[1] = {1, 0, 4, 1};
@@ -63,7 +63,7 @@ TEST(Threshold, JoinsRunsAcrossTheBorderOfTwoRois) {
 }
 
 TEST(Threshold, ReadsEachRoisRowsAndColumnsHalfOpen) {
-  const Picture p = picture_of({"######", "######", "######", "######", "######"});
+  const TestImage p = image_of({"######", "######", "######", "######", "######"});
   Rois rois;
   rois.items[0] = {1, 1, 3, 3};
   rois.items[1] = {4, 2, 5, 4};
@@ -72,7 +72,7 @@ TEST(Threshold, ReadsEachRoisRowsAndColumnsHalfOpen) {
 }
 
 TEST(Threshold, CountsOverlappingRoisOnce) {
-  const Picture p = picture_of({"########", "########"});
+  const TestImage p = image_of({"########", "########"});
   Rois rois;
   rois.items[0] = {0, 0, 5, 2};
   rois.items[1] = {3, 1, 7, 2};
@@ -81,14 +81,14 @@ TEST(Threshold, CountsOverlappingRoisOnce) {
 }
 
 TEST(Threshold, BandsTogetherAreTheWholeFrame) {
-  const Picture p = picture_of({"#", "#", "#", "#", "#"});
+  const TestImage p = image_of({"#", "#", "#", "#", "#"});
   const Rois all = whole_frame(p.frame());
   EXPECT_EQ(runs_of(p.frame(), all, 0, {0, 2}), (List{{0, 0, 1}, {1, 0, 1}}));
   EXPECT_EQ(runs_of(p.frame(), all, 0, {1, 2}), (List{{2, 0, 1}, {3, 0, 1}, {4, 0, 1}}));
 }
 
 TEST(Threshold, KeepsTheFirstRunsOfACheckerboardAndSaysThatThereAreMore) {
-  Picture p(512, 512);
+  TestImage p(512, 512);
   for (int y = 0; y < 512; ++y) {
     for (int x = y % 2; x < 512; x += 2) p(x, y) = 5000;
   }
@@ -109,7 +109,7 @@ TEST(Threshold, IsNotFullBeforeOneRunTooManyBegins) {
   Limits limits;
   limits.runs_per_band = 3;
   auto runs = std::make_unique<Runs>();
-  const Picture fits = picture_of({"#.#.######.."}), more = picture_of({"#.#.######.#"});
+  const TestImage fits = image_of({"#.#.######.."}), more = image_of({"#.#.######.#"});
   threshold_runs(fits.frame(), rois, 100, {}, *runs, limits);
   EXPECT_EQ(runs->count, 3);
   EXPECT_EQ(runs->items[2].x1, 10);
@@ -121,7 +121,7 @@ TEST(Threshold, IsNotFullBeforeOneRunTooManyBegins) {
 }
 
 TEST(Threshold, IgnoresFramesAndBandsThatMakeNoSense) {
-  const Picture p = picture_of({"##"});
+  const TestImage p = image_of({"##"});
   EXPECT_TRUE(runs_of(Frame{}, whole_frame(p.frame()), 0).empty());
   EXPECT_TRUE(runs_of(p.frame(), Rois{}, 0).empty());
   EXPECT_TRUE(runs_of(p.frame(), whole_frame(p.frame()), 0, {2, 2}).empty());
@@ -135,14 +135,14 @@ TEST(Threshold, EqualsThePlainVersionOnRandomFrames) {
   auto fast = std::make_unique<Runs>(), plain = std::make_unique<Runs>();
   for (int round = 0; round < 400; ++round) {
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-    Picture p(1 + below(200), 1 + below(40));
+    TestImage p(1 + below(200), 1 + below(40));
     const unsigned sparse = 1u + random() % 40u;
-    for (auto& value : p.wide) {
+    for (auto& value : p.pixels_16) {
       value = random() % sparse == 0 ? static_cast<std::uint16_t>(random()) : 0;
     }
     if (round % 2 == 0) {
       p = p.with_8_bits();
-      for (auto& value : p.narrow) value = static_cast<std::uint8_t>(value & random());
+      for (auto& value : p.pixels_8) value = static_cast<std::uint8_t>(value & random());
     }
     Rois rois;
     rois.count = below(5);
@@ -150,7 +150,7 @@ TEST(Threshold, EqualsThePlainVersionOnRandomFrames) {
       const int x = below(210) - 5, y = below(50) - 5;
       rois.items[static_cast<std::size_t>(i)] = {x, y, x + below(150), y + below(40)};
     }
-    const int range = p.narrow.empty() ? 0x10000 : 0x100;
+    const int range = p.pixels_8.empty() ? 0x10000 : 0x100;
     const auto threshold = static_cast<std::uint16_t>(below(range));
     const RowBand band{below(3), 3};
     Limits limits;

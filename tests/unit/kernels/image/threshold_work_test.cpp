@@ -12,7 +12,7 @@
 namespace glint::threshold_work_test {
 namespace {
 
-using test::Picture;
+using test::TestImage;
 
 Rois rois_of(const std::vector<Roi>& items) {
   Rois rois;
@@ -20,7 +20,7 @@ Rois rois_of(const std::vector<Roi>& items) {
   return rois;
 }
 
-ThresholdWork work_of(const Picture& picture, const Rois& rois, RowBand band = {},
+ThresholdWork work_of(const TestImage& picture, const Rois& rois, RowBand band = {},
                       const Limits& limits = {}) {
   auto runs = std::make_unique<Runs>();
   const ThresholdWork work = threshold_runs(picture.frame(), rois, 100, band, *runs, limits);
@@ -29,7 +29,7 @@ ThresholdWork work_of(const Picture& picture, const Rois& rois, RowBand band = {
 }
 
 // Returns the number of runs; both versions must agree.
-int runs_of(const Picture& picture, const Rois& rois, RowBand band = {},
+int runs_of(const TestImage& picture, const Rois& rois, RowBand band = {},
             const Limits& limits = {}) {
   auto fast = std::make_unique<Runs>(), plain = std::make_unique<Runs>();
   threshold_runs(picture.frame(), rois, 100, band, *fast, limits);
@@ -41,10 +41,10 @@ int runs_of(const Picture& picture, const Rois& rois, RowBand band = {},
 int blocks_of(int pixels, int block) { return (pixels + block - 1) / block; }
 
 TEST(ThresholdWork, IsAStretchARoiAndRowAndABlockEach64Bytes) {
-  Picture wide(200, 9);
+  TestImage wide(200, 9);
   wide(33, 4) = wide(40, 4) = 500;
   for (const bool narrow : {false, true}) {
-    const Picture picture = narrow ? wide.with_8_bits() : wide;
+    const TestImage picture = narrow ? wide.with_8_bits() : wide;
     const int block = narrow ? 64 : 32;
     for (const int pixels : {1, 31, 32, 33, 63, 64, 65, 130}) {
       const ThresholdWork work =
@@ -59,7 +59,7 @@ TEST(ThresholdWork, IsAStretchARoiAndRowAndABlockEach64Bytes) {
 
 // Pixels in overlapping ROIs are read once, in any order of the ROIs.
 TEST(ThresholdWork, CountsAnOverlapOnceInAnyOrder) {
-  const Picture picture(200, 4);
+  const TestImage picture(200, 4);
   std::vector<Roi> rois = {{0, 0, 40, 4}, {0, 1, 150, 3}, {100, 0, 180, 2}, {160, 2, 190, 4}};
   std::vector<std::size_t> order = {0, 1, 2, 3};
   // Row 0: 40 and 80 pixels; row 1: 40, 110 and 30; row 2: 40, 110 and 30; row 3: 40 and 30.
@@ -74,7 +74,7 @@ TEST(ThresholdWork, CountsAnOverlapOnceInAnyOrder) {
 }
 
 TEST(ThresholdWork, AddsUpOverTheBands) {
-  Picture picture(150, 11);
+  TestImage picture(150, 11);
   for (int y = 0; y < 11; ++y) picture(3 * y, y) = picture(100, y) = 500;
   const Rois rois = rois_of({{0, 2, 90, 9}, {95, 0, 150, 11}});
   const ThresholdWork whole = work_of(picture, rois);
@@ -92,7 +92,7 @@ TEST(ThresholdWork, AddsUpOverTheBands) {
 
 // Row 2 has the third run, in the second of its three blocks.
 TEST(ThresholdWork, EndsWithTheBlockThatFindsTheBufferFull) {
-  Picture picture(96, 6);
+  TestImage picture(96, 6);
   picture(5, 0) = picture(5, 1) = picture(40, 2) = picture(90, 2) = picture(5, 3) = 500;
   Limits limits;
   limits.runs_per_band = 2;
@@ -113,7 +113,7 @@ TEST(ThresholdWork, ReachesItsMaximumWhereEachRoiHasAPixelMoreThanItsBlocks) {
   limits.height = 10;
   limits.tools = 3;
   limits.runs_per_band = 4000;
-  Picture picture(100, 10);
+  TestImage picture(100, 10);
   for (int y = 0; y < 10; ++y)
     for (int x = y % 2; x < 100; x += 2) picture(x, y) = 500;
   const Rois rois = rois_of({{0, 0, 33, 10}, {33, 0, 66, 10}, {66, 0, 100, 10}});
@@ -153,10 +153,10 @@ TEST(ThresholdWork, MaximumFollowsTheLimits) {
 }
 
 TEST(ThresholdLimits, TakeAFrameAtEachAndNoneBeyond) {
-  Picture wide(40, 30);
+  TestImage wide(40, 30);
   wide(39, 29) = 500;
-  const Picture narrow = wide.with_8_bits();
-  const auto found = [](const Picture& picture, int width, int height, int bytes) {
+  const TestImage narrow = wide.with_8_bits();
+  const auto found = [](const TestImage& picture, int width, int height, int bytes) {
     Limits limits;
     limits.width = width;
     limits.height = height;
@@ -177,7 +177,7 @@ TEST(ThresholdLimits, NeverExceedTheLargestFrame) {
   Limits limits;
   limits.width = limits.height = 5000;
   for (const int beyond : {0, 1}) {
-    Picture wide(k_width_max + beyond, 1), high(1, k_height_max + beyond);
+    TestImage wide(k_width_max + beyond, 1), high(1, k_height_max + beyond);
     wide(0, 0) = high(0, 0) = 500;
     EXPECT_EQ(runs_of(wide, whole_frame(wide.frame()), {}, limits), 1 - beyond);
     EXPECT_EQ(runs_of(high, whole_frame(high.frame()), {}, limits), 1 - beyond);
@@ -185,7 +185,7 @@ TEST(ThresholdLimits, NeverExceedTheLargestFrame) {
 }
 
 TEST(ThresholdLimits, TakeEachBandOfAllAndNoOther) {
-  const Picture picture(4, 4, 500);
+  const TestImage picture(4, 4, 500);
   const Rois all = whole_frame(picture.frame());
   EXPECT_EQ(runs_of(picture, all, {0, 1}), 4);
   EXPECT_EQ(runs_of(picture, all, {0, 2}), 2);
@@ -196,7 +196,7 @@ TEST(ThresholdLimits, TakeEachBandOfAllAndNoOther) {
 
 // More ROIs than tools are replaced by the frame. The tool limit is clamped to 1 .. k_tools_max.
 TEST(ThresholdLimits, TakeAsManyRoisAsTools) {
-  const Picture picture(64, 1, 500);
+  const TestImage picture(64, 1, 500);
   const auto pixels = [&](int tools, int count) {
     Limits limits;
     limits.tools = tools;
@@ -223,7 +223,7 @@ TEST(ThresholdLimits, TakeAsManyRoisAsTools) {
 
 // Too many ROIs are replaced by the frame, also in the work counts.
 TEST(ThresholdWork, OfTooManyRoisIsThatOfTheFrame) {
-  const Picture picture(70, 6);
+  const TestImage picture(70, 6);
   Limits limits;
   limits.tools = 1;
   const ThresholdWork work =
@@ -234,7 +234,7 @@ TEST(ThresholdWork, OfTooManyRoisIsThatOfTheFrame) {
 
 // ROIs without a pixel of the frame cause no work.
 TEST(ThresholdWork, SkipsRoisWithoutAPixelOfTheBand) {
-  const Picture picture(64, 8, 500);
+  const TestImage picture(64, 8, 500);
   const Roi empty[] = {{5, 1, 5, 3},   {6, 1, 5, 3},  {5, 3, 9, 3},  {5, 4, 9, 3},
                        {64, 0, 70, 8}, {-9, 0, 0, 8}, {0, 8, 64, 9}, {0, -2, 64, 0}};
   for (const Roi& roi : empty) {

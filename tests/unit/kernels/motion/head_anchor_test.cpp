@@ -12,35 +12,37 @@ namespace glint {
 namespace {
 
 constexpr double k_frame_s = 1.0 / 45;
-constexpr double k_body_shift_sigma = 0.0003, k_body_turn_sigma = 0.004;
+constexpr double k_body_shift_sigma = 0.0003, k_body_rotation_sigma_rad = 0.004;
 
 // A headset in front of a body; its localisation error follows the declared process about a pivot
 // ahead of the camera.
 class Headset {
  public:
-  Headset(const HeadNoise& noise, std::uint64_t seed) : noise_(noise), random_(seed) {
+  Headset(const HeadNoise& noise, std::uint64_t random_seed) : noise_(noise), random_(random_seed) {
     body_ = {random_.rotation(), Vector3(0.1, 0.05, 0.6)};
-    shift_ = noise_.rest_position_m * random_.vector(1);
-    turn_ = noise_.rest_angle_rad * random_.vector(1);
+    translation_error_m_ = noise_.rest_position_m * random_.vector(1);
+    rotation_error_rad_ = noise_.rest_angle_rad * random_.vector(1);
   }
   void step() {
     ++frame_;
     const double kept = std::exp(-k_frame_s / noise_.rest_correlation_s);
     const double renewed = std::sqrt(1 - kept * kept);
-    shift_ = kept * shift_ + renewed * noise_.rest_position_m * random_.vector(1);
-    turn_ = kept * turn_ + renewed * noise_.rest_angle_rad * random_.vector(1);
+    translation_error_m_ =
+        kept * translation_error_m_ + renewed * noise_.rest_position_m * random_.vector(1);
+    rotation_error_rad_ =
+        kept * rotation_error_rad_ + renewed * noise_.rest_angle_rad * random_.vector(1);
   }
   [[nodiscard]] HeadPose given() const {
-    const Quaternion turn = from_rotation_vector(turn_);
+    const Quaternion turn = from_rotation_vector(rotation_error_rad_);
     const Vector3 pivot(0, 0, noise_.pivot_m);
     HeadPose head;
     head.time = Time{} + milliseconds(22) * frame_;
     head.valid = true;
-    head.T_world_camera = {turn, pivot + shift_ + jump_ - turn * pivot};
+    head.T_world_camera = {turn, pivot + translation_error_m_ + jump_ - turn * pivot};
     return head;
   }
   [[nodiscard]] UncertainPose body() {
-    return test::measured_pose(body_, {}, k_body_shift_sigma, k_body_turn_sigma, random_);
+    return test::measured_pose(body_, {}, k_body_shift_sigma, k_body_rotation_sigma_rad, random_);
   }
   void jump(const Vector3& by) { jump_ += by; }
   [[nodiscard]] const Pose& body_truth() const { return body_; }
@@ -49,7 +51,7 @@ class Headset {
   HeadNoise noise_;
   test::Random random_;
   Pose body_;  // the camera is at the world's origin
-  Vector3 shift_, turn_, jump_ = Vector3::Zero();
+  Vector3 translation_error_m_, rotation_error_rad_, jump_ = Vector3::Zero();
   int frame_ = 0;
 };
 
@@ -62,15 +64,15 @@ TEST(HeadAnchor, KeepsTheWorldToTheBodyWhereTheHeadsetWanders) {
   noise.rest_correlation_s = 2;
   double free = 0, held = 0;
   int count = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Headset headset(noise, seed);
-    HeadAnchor anchor;
+  for (std::uint64_t random_seed = 1; random_seed <= 20; ++random_seed) {
+    Headset headset(noise, random_seed);
+    HeadDriftCorrection anchor;
     const Vector3 point(0.05, 0, 0.55);
     Vector3 free_first = Vector3::Zero(), held_first = Vector3::Zero();
     for (int frame = 0; frame < 400; ++frame) {
       headset.step();
       const UncertainPose body = headset.body();
-      const AnchoredHead out = anchor.update(headset.given(), &body, noise);
+      const CorrectedHead out = anchor.update(headset.given(), &body, noise);
       const Vector3 by_head = headset.given().T_world_camera * point;
       const Vector3 by_body = out.head.T_world_camera * point;
       if (frame == 90) free_first = by_head, held_first = by_body;
@@ -91,16 +93,16 @@ TEST(HeadAnchor, KnowsHowSureItIs) {
   const int runs = 300;
   for (int run = 0; run < runs; ++run) {
     Headset headset(noise, 100 + static_cast<std::uint64_t>(run));
-    HeadAnchor anchor;
-    const auto nees = [&](const AnchoredHead& out) {
+    HeadDriftCorrection anchor;
+    const auto nees = [&](const CorrectedHead& out) {
       // The true body pose, mapped to the world by the corrected head, against the pose at
       // definition.
       const Pose placed = out.head.T_world_camera * headset.body_truth();
       const Vector6 error = pose_difference(placed, anchor.T_world_body());
-      const Matrix6 covariance = out.fresh + out.lasting;
+      const Matrix6 covariance = out.independent + out.shared;
       return Cholesky<6>(covariance).squared_length(error);
     };
-    AnchoredHead out;
+    CorrectedHead out;
     for (int frame = 0; frame < 225; ++frame) {
       headset.step();
       const UncertainPose body = headset.body();
@@ -129,22 +131,22 @@ TEST(HeadAnchor, HoldsTheWorldOfAHeadsetThatDriftsMoreThanDeclared) {
   for (const bool drifts : {true, false}) {
     double errors = 0, nees = 0;
     int count = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      Headset headset(drifts ? wide : declared, seed);
-      HeadAnchor anchor;
+    for (std::uint64_t random_seed = 1; random_seed <= 20; ++random_seed) {
+      Headset headset(drifts ? wide : declared, random_seed);
+      HeadDriftCorrection anchor;
       for (int frame = 0; frame < 400; ++frame) {
         headset.step();
         const UncertainPose body = headset.body();
-        const AnchoredHead out = anchor.update(headset.given(), &body, declared);
+        const CorrectedHead out = anchor.update(headset.given(), &body, declared);
         if (frame < 200) continue;
         const Pose placed = out.head.T_world_camera * headset.body_truth();
         const Vector6 error = pose_difference(placed, anchor.T_world_body());
         errors += error.head<3>().squaredNorm();
-        nees += Cholesky<6>(Matrix6(out.fresh + out.lasting)).squared_length(error) / 6;
+        nees += Cholesky<6>(Matrix6(out.independent + out.shared)).squared_length(error) / 6;
         ++count;
       }
       // The error's jitter also raises the estimated speed, and with it the declared error.
-      EXPECT_EQ(anchor.drift_factor() > 1, drifts) << seed;
+      EXPECT_EQ(anchor.drift_factor() > 1, drifts) << random_seed;
     }
     EXPECT_LT(std::sqrt(errors / count), 0.0012) << drifts;
     EXPECT_GT(nees / count, 0.5) << drifts;
@@ -154,36 +156,36 @@ TEST(HeadAnchor, HoldsTheWorldOfAHeadsetThatDriftsMoreThanDeclared) {
 
 TEST(HeadAnchor, WithoutABodySaysWhatTheHeadsetDeclares) {
   HeadNoise noise;
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   HeadPose head;
   head.valid = true;
   head.T_world_camera.translation = {0.3, 0.2, 0.1};
-  const AnchoredHead out = anchor.update(head, nullptr, noise);
+  const CorrectedHead out = anchor.update(head, nullptr, noise);
   EXPECT_FALSE(out.corrected);
   EXPECT_EQ(out.head.T_world_camera.translation, head.T_world_camera.translation);
-  EXPECT_TRUE(out.fresh.isZero());
+  EXPECT_TRUE(out.independent.isZero());
   const Vector3 pivot = head.T_world_camera * Vector3(0, 0, noise.pivot_m);
-  const Matrix6 there = out.lasting_at(pivot);
+  const Matrix6 there = out.shared_at(pivot);
   EXPECT_NEAR(there(0, 0), 1e-6, 1e-12);
   EXPECT_NEAR(there(5, 5), 4e-6, 1e-12);
   // 0.5 m away the angle of 2 mrad adds 1 mm.
-  const Matrix6 beside = out.lasting_at(pivot + Vector3(0.5, 0, 0));
+  const Matrix6 beside = out.shared_at(pivot + Vector3(0.5, 0, 0));
   EXPECT_NEAR(beside(1, 1), 2e-6, 1e-12);
 }
 
 TEST(HeadAnchor, IsLessSureWhileTheHeadMoves) {
   const HeadNoise noise;
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   HeadPose head;
   head.valid = true;
   double before = 0;
   for (int frame = 0; frame < 90; ++frame) {
     head.time = Time{} + milliseconds(22) * frame;
     if (frame >= 45) head.T_world_camera.translation.x() += 0.5 * 0.022;
-    const AnchoredHead out = anchor.update(head, nullptr, noise);
-    if (frame == 44) before = out.lasting(0, 0);
+    const CorrectedHead out = anchor.update(head, nullptr, noise);
+    if (frame == 44) before = out.shared(0, 0);
     if (frame < 89) continue;
-    EXPECT_GT(out.lasting(0, 0), 20 * before);
+    EXPECT_GT(out.shared(0, 0), 20 * before);
   }
 }
 
@@ -191,8 +193,8 @@ TEST(HeadAnchor, MovesWhatIsKnownAlongWhenTheBodyComesBack) {
   HeadNoise noise;
   noise.rest_position_m = 0.01;
   Headset headset(noise, 7);
-  HeadAnchor anchor;
-  AnchoredHead out;
+  HeadDriftCorrection anchor;
+  CorrectedHead out;
   for (int frame = 0; frame < 200; ++frame) {
     headset.step();
     const UncertainPose body = headset.body();
@@ -205,7 +207,8 @@ TEST(HeadAnchor, MovesWhatIsKnownAlongWhenTheBodyComesBack) {
     const Vector3 point(0.05, 0, 0.55);
     const Vector3 was = before * point, is = out.head.T_world_camera * point;
     EXPECT_GT((is - was).norm(), 0.002);
-    EXPECT_LT((out.moved * was - is).norm(), 0.0005) << "a pose from before lies where it is now";
+    EXPECT_LT((out.gap_correction * was - is).norm(), 0.0005)
+        << "a pose from before lies where it is now";
   }
 }
 
@@ -220,7 +223,7 @@ TEST(HeadAnchor, KnowsByHowMuchTheWorldStepsWhileTheBodyIsHidden) {
   noise.position_per_turn_m = noise.angle_per_turn_s = 0;
   const double kept = std::exp(-0.022 / noise.rest_correlation_s);
   Headset headset(noise, 11);
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   const Vector3 point(0.05, 0, 0.55);
   Vector3 before = Vector3::Zero();
   double chi_square = 0;
@@ -230,13 +233,13 @@ TEST(HeadAnchor, KnowsByHowMuchTheWorldStepsWhileTheBodyIsHidden) {
     const Vector3 error = headset.given().T_world_camera * point - point;
     const UncertainPose body = headset.body();
     const bool hidden = frame >= 100 && frame % 4 > 1;
-    const AnchoredHead out = anchor.update(headset.given(), hidden ? nullptr : &body, noise);
+    const CorrectedHead out = anchor.update(headset.given(), hidden ? nullptr : &body, noise);
     EXPECT_EQ(out.in_gap, frame >= 102 && frame % 4 != 1) << frame;
-    EXPECT_EQ(out.in_gap, !out.stepped.isZero()) << frame;
+    EXPECT_EQ(out.in_gap, !out.step_covariance.isZero()) << frame;
     const Vector3 step = error - kept * before;
     before = error;
     if (!out.in_gap) continue;
-    const Matrix3 covariance = out.stepped_at(point).topLeftCorner<3, 3>();
+    const Matrix3 covariance = out.step_covariance_at(point).topLeftCorner<3, 3>();
     chi_square += step.dot(covariance.inverse() * step);
     ++steps;
   }
@@ -250,13 +253,13 @@ TEST(HeadAnchor, TakesItsErrorsJitterForNoSpeed) {
   noise.position_per_speed_s = 1;
   noise.position_per_turn_m = noise.angle_per_speed_s_m = noise.angle_per_turn_s = 0;
   Headset headset(noise, 12);
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   double variance = 0;
   constexpr int k_frames = 2000;
   for (int frame = 0; frame < k_frames; ++frame) {
     headset.step();
     (void)anchor.update(headset.given(), nullptr, noise);
-    variance += anchor.uncorrected_at({0, 0, noise.pivot_m})(0, 0) / k_frames;
+    variance += anchor.uncorrected_covariance_at({0, 0, noise.pivot_m})(0, 0) / k_frames;
   }
   // The jitter is 0.1 m/s from frame to frame. If it counted as speed, the error would be 0.1 m.
   EXPECT_LT(std::sqrt(variance), 0.035);
@@ -268,7 +271,7 @@ TEST(HeadAnchor, CountsTheSpeedOfAHeadThatMovesToAndFro) {
   noise.rest_position_m = noise.rest_angle_rad = 0;
   noise.position_per_speed_s = 0.1;
   noise.position_per_turn_m = noise.angle_per_speed_s_m = noise.angle_per_turn_s = 0;
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   double sigma_m = 0;
   constexpr int k_frames = 450;
   HeadPose head;
@@ -278,7 +281,7 @@ TEST(HeadAnchor, CountsTheSpeedOfAHeadThatMovesToAndFro) {
     head.time = Time{static_cast<std::int64_t>(t * 1e9)};
     head.T_world_camera.translation.x() = 0.04 * std::sin(6.283185307179586 * t);
     (void)anchor.update(head, nullptr, noise);
-    sigma_m += std::sqrt(anchor.uncorrected_at({0, 0, noise.pivot_m})(0, 0)) / k_frames;
+    sigma_m += std::sqrt(anchor.uncorrected_covariance_at({0, 0, noise.pivot_m})(0, 0)) / k_frames;
   }
   EXPECT_NEAR(sigma_m, 0.1 * 0.16, 0.1 * 0.05);
 }
@@ -286,18 +289,18 @@ TEST(HeadAnchor, CountsTheSpeedOfAHeadThatMovesToAndFro) {
 TEST(HeadAnchor, IgnoresAWrongSightButBelievesTheBodyWhenTheHeadsetHasJumped) {
   const HeadNoise noise;
   Headset headset(noise, 8);
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   for (int frame = 0; frame < 100; ++frame) {
     headset.step();
     UncertainPose body = headset.body();
     if (frame == 80) body.pose.translation.x() += 0.1;
-    const AnchoredHead out = anchor.update(headset.given(), &body, noise);
+    const CorrectedHead out = anchor.update(headset.given(), &body, noise);
     EXPECT_EQ(out.corrected, frame != 80) << frame;
   }
   EXPECT_EQ(anchor.jumps(), 0);
   headset.jump({0.05, 0, 0});
-  AnchoredHead out;
-  for (int frame = 0; frame < k_anchor_refused_max; ++frame) {
+  CorrectedHead out;
+  for (int frame = 0; frame < k_body_rejected_max; ++frame) {
     EXPECT_FALSE(out.corrected && frame > 0);
     headset.step();
     const UncertainPose body = headset.body();
@@ -312,15 +315,15 @@ TEST(HeadAnchor, IgnoresAWrongSightButBelievesTheBodyWhenTheHeadsetHasJumped) {
 TEST(HeadAnchor, StaysFiniteForStampsAndCovariancesThatAreNone) {
   const HeadNoise noise;
   Headset headset(noise, 9);
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   for (int frame = 0; frame < 200; ++frame) {
     HeadPose head = headset.given();
     head.time = Time{} - milliseconds(frame);  // backwards
     UncertainPose body = headset.body();
     body.covariance.setZero();
-    const AnchoredHead out = anchor.update(head, &body, noise);
+    const CorrectedHead out = anchor.update(head, &body, noise);
     ASSERT_TRUE(std::isfinite(out.head.T_world_camera.translation.sum()));
-    ASSERT_TRUE(std::isfinite(out.lasting.sum() + out.fresh.sum()));
+    ASSERT_TRUE(std::isfinite(out.shared.sum() + out.independent.sum()));
   }
 }
 
@@ -328,7 +331,7 @@ TEST(HeadAnchor, GivesTheSameBitsEverywhere) {
   const HeadNoise noise;
   test::Random random(10);
   const Pose body_truth{random.rotation(), Vector3(0.1, 0.05, 0.6)};
-  HeadAnchor anchor;
+  HeadDriftCorrection anchor;
   test::BitHash hash;
   HeadPose head;
   head.valid = true;
@@ -336,10 +339,10 @@ TEST(HeadAnchor, GivesTheSameBitsEverywhere) {
     head.time = Time{} + milliseconds(22) * frame;
     head.T_world_camera.translation += random.vector(0.0005);
     const UncertainPose body =
-        test::measured_pose(body_truth, {}, k_body_shift_sigma, k_body_turn_sigma, random);
-    const AnchoredHead out = anchor.update(head, frame % 50 < 40 ? &body : nullptr, noise);
+        test::measured_pose(body_truth, {}, k_body_shift_sigma, k_body_rotation_sigma_rad, random);
+    const CorrectedHead out = anchor.update(head, frame % 50 < 40 ? &body : nullptr, noise);
     hash.add(out.head.T_world_camera);
-    for (int i = 0; i < 6; ++i) hash.add(out.lasting(i, 5 - i) + out.fresh(i, i));
+    for (int i = 0; i < 6; ++i) hash.add(out.shared(i, 5 - i) + out.independent(i, i));
   }
   EXPECT_EQ(hash.value(), 12037544854358833628u);
 }

@@ -14,12 +14,12 @@ Quaternion turned(const Vector3& axis, double angle) {
   return from_rotation_vector(angle * axis.normalized());
 }
 
-StampedPose random_stamped(std::int64_t ms, test::Random& random) {
+TimedPose random_stamped(std::int64_t ms, test::Random& random) {
   const Quaternion rotation = random.rotation();
   return {Time{ms * 1'000'000}, {rotation, random.vector(1)}};
 }
 
-StampedPose stamped(std::int64_t ms, const Quaternion& rotation, const Vector3& place) {
+TimedPose stamped(std::int64_t ms, const Quaternion& rotation, const Vector3& place) {
   return {Time{ms * 1'000'000}, {rotation, place}};
 }
 

@@ -91,13 +91,13 @@ TEST(MotionFilter, CorrectsByAPoseAsTheTextbookDoes) {
     const MotionCovariance rest =
         product(MotionCovariance::Identity() - product(gain, h), before.covariance);
     EXPECT_LT((after.covariance - rest).norm(), 1e-10 * before.covariance.norm());
-    EXPECT_NEAR(correction.chi_square, innovation.dot(product(inverse, innovation)), 1e-8);
-    EXPECT_NEAR(correction.linear_whitened.squaredNorm(), correction.linear_chi_square, 1e-12);
+    EXPECT_NEAR(correction.nis, innovation.dot(product(inverse, innovation)), 1e-8);
+    EXPECT_NEAR(correction.linear_whitened.squaredNorm(), correction.linear_nis, 1e-12);
     EXPECT_NEAR(
-        correction.angular_chi_square,
+        correction.angular_nis,
         innovation.tail<3>().dot(s.bottomRightCorner<3, 3>().inverse() * innovation.tail<3>()),
         1e-8);
-    EXPECT_NEAR(correction.linear_chi_square,
+    EXPECT_NEAR(correction.linear_nis,
                 innovation.head<3>().dot(s.topLeftCorner<3, 3>().inverse() * innovation.head<3>()),
                 1e-8);
   }
@@ -156,9 +156,9 @@ TEST(MotionFilter, CorrectsByAPointAsItsFirstAndSecondDerivativesSay) {
     const Correction correction = correct_by_point(after, measured);
     ASSERT_EQ(correction.reason, Reason::none);
     const Vector3 innovation = measured.measured_m - before.pose * measured.model_m - mean;
-    EXPECT_NEAR(correction.chi_square, innovation.dot(s.inverse() * innovation), 1e-6);
-    EXPECT_EQ(correction.linear_chi_square, correction.chi_square);
-    EXPECT_EQ(correction.angular_chi_square, 0);
+    EXPECT_NEAR(correction.nis, innovation.dot(s.inverse() * innovation), 1e-6);
+    EXPECT_EQ(correction.linear_nis, correction.nis);
+    EXPECT_EQ(correction.angular_nis, 0);
     EXPECT_EQ(correction.linear_whitened, Vector3(0, 0, 0));
     EXPECT_LT((test::error_between(after, before) - product(gain, innovation)).norm(), 1e-8);
     // The axes of the errors have rotated with the tool.
@@ -179,7 +179,7 @@ TEST(MotionFilter, StartsWithThePosesCovarianceAndWhatAHandMayDo) {
   UncertainPose first{
       Time{77}, {random.rotation(), random.vector(1)}, test::random_covariance<6>(random, 0.01)};
   const MotionSettings settings{3, 2, 500, 40, 0.7, 4};
-  const MotionState state = start_motion(first, settings);
+  const MotionState state = initial_motion_state(first, settings);
   EXPECT_EQ(state.time, first.time);
   EXPECT_EQ(state.pose.translation, first.pose.translation);
   EXPECT_EQ(state.pose.rotation.coeffs(), first.pose.rotation.coeffs());
@@ -203,7 +203,7 @@ TEST(MotionFilter, StartsWithThePosesCovarianceAndWhatAHandMayDo) {
 
 // The acceleration's variance is stationary: damping removes as much as the process noise adds.
 TEST(MotionFilter, KeepsTheVarianceOfTheAccelerationsThatItStartsWith) {
-  MotionState state = start_motion({Time{}, {}, 1e-6 * Matrix6::Identity()}, {});
+  MotionState state = initial_motion_state({Time{}, {}, 1e-6 * Matrix6::Identity()}, {});
   const double linear = state.covariance(k_acceleration, k_acceleration);
   const double angular = state.covariance(k_angular_acceleration, k_angular_acceleration);
   propagate(state, Time{10'000'000}, {}, {});
@@ -217,7 +217,7 @@ TEST(MotionFilter, MovesAStateAsItsFrameMoves) {
   for (int trial = 0; trial < 20; ++trial) {
     const MotionState state = test::random_state(random);
     const Pose by{random.rotation(), random.vector(1)};
-    const MotionState there = moved_state(state, by);
+    const MotionState there = transformed_state(state, by);
     EXPECT_EQ(there.time, state.time);
     EXPECT_LT(pose_difference(there.pose, by * state.pose).norm(), 1e-13);
     EXPECT_LT((there.velocity_m_s - by.rotation * state.velocity_m_s).norm(), 1e-14);
@@ -235,7 +235,7 @@ TEST(MotionFilter, MovesAStateAsItsFrameMoves) {
     }
     const double before = error.dot(product(state.covariance, error));
     EXPECT_NEAR(moved.dot(product(there.covariance, moved)) / before, 1, 1e-10);
-    const MotionState back = moved_state(there, by.inverse());
+    const MotionState back = transformed_state(there, by.inverse());
     EXPECT_LT((back.covariance - state.covariance).norm(), 1e-12 * state.covariance.norm());
   }
 }
@@ -272,7 +272,7 @@ TEST(MotionFilter, FollowsConstantVelocityAndTurnWithoutLag) {
   };
   UncertainPose measured;
   measured.covariance = 1e-6 * Matrix6::Identity();
-  MotionState state = start_motion(measured, {});
+  MotionState state = initial_motion_state(measured, {});
   for (int frame = 1; frame < 60; ++frame) {
     measured.time = test::frame_time(frame);
     measured.pose = truth(frame);
@@ -310,8 +310,8 @@ TEST(MotionFilter, LearnsNothingOfTurnsAboutTheLineToItsOnlyMarker) {
     ASSERT_EQ(correct_by_point(state, point).reason, Reason::none);
     const Vector3 line = (state.pose.rotation * point.model_m).normalized();
     EXPECT_GT(line.y(), 0.3);
-    const Matrix3 turns = state.covariance.block<3, 3>(k_rotation, k_rotation);
-    EXPECT_NEAR(line.dot(turns * line), sigma * sigma, 0.01 * sigma * sigma) << sight;
+    const Matrix3 rotation_covariance = state.covariance.block<3, 3>(k_rotation, k_rotation);
+    EXPECT_NEAR(line.dot(rotation_covariance * line), sigma * sigma, 0.01 * sigma * sigma) << sight;
   }
 }
 
@@ -338,19 +338,19 @@ TEST(MotionFilter, GivesTheSameBitsEverywhere) {
 // order.
 TEST(MotionFilter, ExpectsOneMarkerWhereALooselyHeldToolCanHaveTurnedIt) {
   test::Random random(11);
-  constexpr double k_turn_sigma = 0.15, k_marker_sigma_m = 0.0002;
+  constexpr double k_rotation_sigma_rad = 0.15, k_marker_sigma_m = 0.0002;
   const int n = 4000;
   double squares = 0;
   for (int i = 0; i < n; ++i) {
-    MotionState state = start_motion({Time{}, {}, 1e-8 * Matrix6::Identity()}, {});
+    MotionState state = initial_motion_state({Time{}, {}, 1e-8 * Matrix6::Identity()}, {});
     state.covariance.block<3, 3>(k_rotation, k_rotation) =
-        k_turn_sigma * k_turn_sigma * Matrix3::Identity();
+        k_rotation_sigma_rad * k_rotation_sigma_rad * Matrix3::Identity();
     MeasuredPoint point;
     point.model_m = Vector3(0, 0, 0.05);
-    point.measured_m = from_rotation_vector(random.vector(k_turn_sigma)) * point.model_m +
+    point.measured_m = from_rotation_vector(random.vector(k_rotation_sigma_rad)) * point.model_m +
                        random.vector(k_marker_sigma_m);
     point.covariance_m2 = k_marker_sigma_m * k_marker_sigma_m * Matrix3::Identity();
-    squares += correct_by_point(state, point).chi_square / 3;
+    squares += correct_by_point(state, point).nis / 3;
   }
   EXPECT_NEAR(squares / n, 1, 0.1);
 }

@@ -17,10 +17,10 @@ TEST(PredictPose, IsWhereTheFilterItselfWouldBeAndAsUnsureAsStrokesMakeIt) {
       MotionState later = state;
       propagate(later, time, {}, {1.3, 0.8});
       UncertainPose expected = pose_of(later);
-      expected.covariance.topLeftCorner<3, 3>() +=
-          stroke_spread(state.velocity_m_s, linear_stroke_1_s(state.velocity_m_s), 0.001 * ms);
-      expected.covariance.bottomRightCorner<3, 3>() +=
-          stroke_spread(state.angular_velocity_rad_s, k_angular_stroke_1_s, 0.001 * ms);
+      expected.covariance.topLeftCorner<3, 3>() += occlusion_covariance(
+          state.velocity_m_s, linear_occlusion_share_1_s(state.velocity_m_s), 0.001 * ms);
+      expected.covariance.bottomRightCorner<3, 3>() += occlusion_covariance(
+          state.angular_velocity_rad_s, k_angular_occlusion_share_1_s, 0.001 * ms);
       const UncertainPose predicted = predict_pose(state, time, {}, {1.3, 0.8});
       EXPECT_EQ(predicted.time, time);
       EXPECT_LT(pose_difference(predicted.pose, expected.pose).norm(), 1e-14);

@@ -10,16 +10,16 @@
 #include "kernels/motion/rest_window.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
-namespace glint::rest_window_plain_test {
+namespace glint::rest_window_reference_test {
 namespace {
 
 using test::Random;
 
 // All frames of the possible static window, oldest first; rules as in rest_window.hpp.
-class PlainWindow {
+class ReferenceWindow {
  public:
   int add(const UncertainPose& measured, const CorrelatedErrors& correlated,
-          const RestSettings& settings) {
+          const StaticDetectorSettings& settings) {
     settings_ = settings;
     correlated_ = correlated;
     const Vector6 off =
@@ -32,11 +32,11 @@ class PlainWindow {
       return 0;
     }
     kept_.push_back(measured);
-    if (kept_.size() > k_rest_frames_max) kept_.erase(kept_.begin());
+    if (kept_.size() > k_static_frames_max) kept_.erase(kept_.begin());
     const int n = static_cast<int>(kept_.size());
     // Windows of the newest n, 3/4 n, 1/2 n, 3/8 n .. frames, the shortest first.
     std::vector<int> lengths;
-    for (int level = 0; level < k_rest_levels; ++level) {
+    for (int level = 0; level < k_static_window_levels; ++level) {
       const int power = 1 << level / 2;
       lengths.push_back(level % 2 == 0 ? n / power : 3 * n / (4 * power));
     }
@@ -44,10 +44,10 @@ class PlainWindow {
     for (auto frames = lengths.rbegin(); frames != lengths.rend(); ++frames) {
       if (*frames < 2) continue;
       ++tests;
-      const bool brief = *frames <= settings.frames_min;
-      const double limit = brief ? settings.short_chi_square_max : settings.long_chi_square_max;
+      const bool is_short = *frames <= settings.frames_min;
+      const double limit = is_short ? settings.short_chi_square_max : settings.long_chi_square_max;
       if (!(halves(*frames).chi_square <= limit)) {
-        const int left = brief ? frames_ : n - n / 8;
+        const int left = is_short ? frames_ : n - n / 8;
         kept_.erase(kept_.begin(), kept_.end() - left);
         break;
       }
@@ -68,18 +68,19 @@ class PlainWindow {
   [[nodiscard]] Halves halves(int frames) const {
     const int newer = frames / 2, older = frames - newer;
     const Vector6 apart = mean(newer, 0) - mean(older, newer);
-    const Matrix6 covariance = mean_covariance(newer, 0) + mean_covariance(older, newer) +
-                               of_halves(correlated_, settings_.correlation, seconds(frames));
+    const Matrix6 covariance =
+        mean_covariance(newer, 0) + mean_covariance(older, newer) +
+        halves_covariance(correlated_, settings_.correlation, seconds(frames));
     return {apart, apart.dot(covariance.inverse() * apart)};
   }
-  [[nodiscard]] Rest rest() const {
+  [[nodiscard]] StaticEstimate rest() const {
     const Halves cut = halves(frames_);
     const double drift = cut.chi_square > settings_.drift_chi_square
                              ? 1 - settings_.drift_chi_square / cut.chi_square
                              : 0;
     const double unseen = cut.chi_square > 6 ? 1 - 6 / cut.chi_square : 0;
     const Vector6 place = mean(frames_, 0) + drift * cut.difference;
-    Rest rest;
+    StaticEstimate rest;
     rest.pose.time = kept_.back().time;
     rest.pose.pose = {from_rotation_vector(place.tail<3>()) * anchor_.rotation,
                       anchor_.translation + place.head<3>()};
@@ -94,8 +95,8 @@ class PlainWindow {
     return rest;
   }
   [[nodiscard]] Matrix6 correlated() const {
-    return of_mean(correlated_, settings_.correlation,
-                   frames_ >= settings_.frames_min ? seconds(frames_) : 0);
+    return covariance_of_mean(correlated_, settings_.correlation,
+                              frames_ >= settings_.frames_min ? seconds(frames_) : 0);
   }
 
  private:
@@ -115,7 +116,7 @@ class PlainWindow {
   std::vector<UncertainPose> kept_;
   Pose anchor_;
   int frames_ = 0;
-  RestSettings settings_;
+  StaticDetectorSettings settings_;
   CorrelatedErrors correlated_;
 };
 
@@ -125,10 +126,10 @@ TEST(RestWindow, IsThatOfThePlainVersionFrameByFrame) {
   Random random(31);
   int resting = 0, drifting = 0, full = 0;
   for (int run = 0; run < 12; ++run) {
-    auto window = std::make_unique<RestWindow>();
-    auto sums = std::make_unique<RestSums>();
-    PlainWindow plain;
-    RestSettings settings;
+    auto window = std::make_unique<StaticDetector>();
+    auto sums = std::make_unique<StaticWindowSums>();
+    ReferenceWindow plain;
+    StaticDetectorSettings settings;
     settings.frames_min = run % 3 == 0 ? 5 : 8;
     settings.drift_chi_square = run % 2 == 0 ? 12.6 : 4;
     settings.correlation = {0.3, 5};
@@ -152,10 +153,10 @@ TEST(RestWindow, IsThatOfThePlainVersionFrameByFrame) {
       const int tests = window->add(measured, correlated, settings, *sums);
       ASSERT_EQ(tests, plain.add(measured, correlated, settings)) << run << " " << frame;
       ASSERT_EQ(window->frames(), plain.frames()) << run << " " << frame;
-      EXPECT_EQ(window->rests(), plain.frames() >= settings.frames_min);
+      EXPECT_EQ(window->is_static(), plain.frames() >= settings.frames_min);
       EXPECT_LT((window->correlated(*sums) - plain.correlated()).norm(), 1e-12);
       if (plain.frames() < 2) continue;
-      const Rest found = window->rest(*sums), expected = plain.rest();
+      const StaticEstimate found = window->rest(*sums), expected = plain.rest();
       EXPECT_EQ(found.pose.time, time);
       EXPECT_LT(pose_difference(found.pose.pose, expected.pose.pose).norm(), 1e-9);
       EXPECT_LT((found.pose.covariance - expected.pose.covariance).norm(),
@@ -164,9 +165,9 @@ TEST(RestWindow, IsThatOfThePlainVersionFrameByFrame) {
                 1e-6 * (1e-3 + expected.drift_per_s.norm()));
       EXPECT_LT((found.drift_covariance - expected.drift_covariance).norm(),
                 1e-7 * expected.drift_covariance.norm());
-      resting += window->rests() ? 1 : 0;
+      resting += window->is_static() ? 1 : 0;
       drifting += expected.drift_per_s.isZero() ? 0 : 1;
-      full += plain.frames() == k_rest_frames_max ? 1 : 0;
+      full += plain.frames() == k_static_frames_max ? 1 : 0;
       ASSERT_FALSE(HasFailure()) << run << " " << frame;
     }
   }
@@ -183,20 +184,23 @@ UncertainPose pose_at(const Vector3& place, const Vector3& turn, Time time) {
 
 // A frame at the limit continues the static window; just beyond it starts a new one.
 TEST(RestWindow, EndsBeyondEachLimitAlone) {
-  const Time second = Time{} + RestSettings{}.gap_max;
+  const Time second = Time{} + StaticDetectorSettings{}.gap_max;
   const auto frames_after = [](const UncertainPose& next) {
-    RestWindow window;
-    auto sums = std::make_unique<RestSums>();
+    StaticDetector window;
+    auto sums = std::make_unique<StaticWindowSums>();
     window.add(pose_at({0, 0, 0}, {0, 0, 0}, Time{}), {}, {}, *sums);
     window.add(next, {}, {}, *sums);
     return window.frames();
   };
   EXPECT_EQ(frames_after(pose_at({0, 0, 0}, {0, 0, 0}, second)), 2);
   EXPECT_EQ(frames_after(pose_at({0, 0, 0}, {0, 0, 0}, second + Duration{1})), 1);
-  EXPECT_EQ(frames_after(pose_at({k_anchor_m, 0, 0}, {0, 0, 0}, second)), 2);
-  EXPECT_EQ(frames_after(pose_at({0, -1.0001 * k_anchor_m, 0}, {0, 0, 0}, second)), 1);
-  EXPECT_EQ(frames_after(pose_at({0, 0, 0}, {0, 0, 0.9999 * k_anchor_rad}, second)), 2);
-  EXPECT_EQ(frames_after(pose_at({0, 0, 0}, {0, 1.0001 * k_anchor_rad, 0}, second)), 1);
+  EXPECT_EQ(frames_after(pose_at({k_window_translation_max_m, 0, 0}, {0, 0, 0}, second)), 2);
+  EXPECT_EQ(frames_after(pose_at({0, -1.0001 * k_window_translation_max_m, 0}, {0, 0, 0}, second)),
+            1);
+  EXPECT_EQ(frames_after(pose_at({0, 0, 0}, {0, 0, 0.9999 * k_window_rotation_max_rad}, second)),
+            2);
+  EXPECT_EQ(frames_after(pose_at({0, 0, 0}, {0, 1.0001 * k_window_rotation_max_rad, 0}, second)),
+            1);
 }
 
 // After move() the window equals one whose poses were all measured in the moved frame.
@@ -204,8 +208,9 @@ TEST(RestWindow, MovesAlongWithItsFrame) {
   Random random(32);
   const Pose truth{random.rotation(), random.vector(0.1)};
   const Pose by{from_rotation_vector({0.002, -0.001, 0.003}), {0.03, -0.02, 0.01}};
-  auto moved = std::make_unique<RestWindow>(), there = std::make_unique<RestWindow>();
-  auto moved_sums = std::make_unique<RestSums>(), there_sums = std::make_unique<RestSums>();
+  auto moved = std::make_unique<StaticDetector>(), there = std::make_unique<StaticDetector>();
+  auto moved_sums = std::make_unique<StaticWindowSums>(),
+       there_sums = std::make_unique<StaticWindowSums>();
   for (int frame = 0; frame < 40; ++frame) {
     UncertainPose pose = test::measured_pose(truth, test::frame_time(frame), 1e-5, 1e-5, random);
     if (frame == 30) moved->move(by);
@@ -222,4 +227,4 @@ TEST(RestWindow, MovesAlongWithItsFrame) {
 }
 
 }  // namespace
-}  // namespace glint::rest_window_plain_test
+}  // namespace glint::rest_window_reference_test

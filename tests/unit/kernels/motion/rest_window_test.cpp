@@ -15,13 +15,13 @@ constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.005;
 
 // A static window with its own sums.
 struct Window {
-  RestWindow at;
-  RestSums sums;
-  void add(const UncertainPose& measured) { at.add(measured, {}, RestSettings{}, sums); }
+  StaticDetector at;
+  StaticWindowSums sums;
+  void add(const UncertainPose& measured) { at.add(measured, {}, StaticDetectorSettings{}, sums); }
   void clear() { at.clear(); }
-  [[nodiscard]] bool rests() const { return at.rests(); }
+  [[nodiscard]] bool is_static() const { return at.is_static(); }
   [[nodiscard]] int frames() const { return at.frames(); }
-  [[nodiscard]] Rest rest() const { return at.rest(sums); }
+  [[nodiscard]] StaticEstimate rest() const { return at.rest(sums); }
 };
 
 UncertainPose seen(const Pose& truth, int frame, test::Random& random) {
@@ -43,12 +43,12 @@ TEST(RestWindow, GrowsToItsMaximumAtRestAndAverages) {
     sum += measured.pose.translation;
   }
   ASSERT_EQ(window->frames(), 60);
-  const Rest rest = window->rest();
+  const StaticEstimate rest = window->rest();
   EXPECT_LT((rest.pose.pose.translation - sum / 60).norm(), 1e-12);
   EXPECT_EQ(rest.drift_per_s, Vector6(Vector6::Zero()));
   EXPECT_LT(test::angle_between(rest.pose.pose.rotation, truth.rotation), 4 * k_turn_sigma / 7);
   for (int frame = 60; frame < 400; ++frame) window->add(seen(truth, frame, random));
-  EXPECT_EQ(window->frames(), k_rest_frames_max);
+  EXPECT_EQ(window->frames(), k_static_frames_max);
 }
 
 TEST(RestWindow, KnowsItsMeansErrorOverManyRests) {
@@ -79,7 +79,7 @@ TEST(RestWindow, IsAsSureOfAHandThatTremblesAsItIsRight) {
     window->add(test::measured_pose({Quaternion::Identity(), off}, test::frame_time(frame), 0.0001,
                                     0.001, random));
     if (window->frames() < 60) continue;
-    const Rest rest = window->rest();
+    const StaticEstimate rest = window->rest();
     const Vector3 error = rest.pose.pose.translation - off;
     squares += error.dot(rest.pose.covariance.topLeftCorner<3, 3>().inverse() * error) / 3;
     ++n;
@@ -93,9 +93,9 @@ TEST(RestWindow, EndsWithTheFirstFrameOfAMove) {
   const Pose truth{random.rotation(), random.vector(0.3)};
   const auto window = std::make_unique<Window>();
   for (int frame = 0; frame < 100; ++frame) window->add(seen(truth, frame, random));
-  ASSERT_TRUE(window->rests());
+  ASSERT_TRUE(window->is_static());
   window->add(seen(drifted(truth, {0.006, 0, 0}), 100, random));
-  EXPECT_FALSE(window->rests());
+  EXPECT_FALSE(window->is_static());
   EXPECT_EQ(window->frames(), 1);
 }
 
@@ -105,7 +105,7 @@ TEST(RestWindow, NeverHoldsAHandInMotion) {
   const auto window = std::make_unique<Window>();
   for (int frame = 0; frame < 500; ++frame) {
     window->add(seen(drifted(start, {0.1 * frame / 45.0, 0, 0}), frame, random));
-    EXPECT_FALSE(window->rests()) << frame;
+    EXPECT_FALSE(window->is_static()) << frame;
   }
 }
 
@@ -171,7 +171,7 @@ TEST(RestWindow, HoldsAfterAFrameThatIsUndone) {
     const double moved = frame % 200 < 180 ? 0 : 0.002 * (frame % 200 - 180);
     const UncertainPose measured = seen(drifted(truth, {moved, 0, 0}), frame, random);
     plain->add(measured);
-    const RestWindow before = undone->at;
+    const StaticDetector before = undone->at;
     const Vector3 aside(frame % 2 == 0 ? 0.5 : 0.003, 0, 0);  // starts or ends a window
     undone->add(seen(drifted(truth, aside), frame, other));
     undone->at = before;
@@ -189,9 +189,9 @@ TEST(RestWindow, TestsItsHalvesAtMostOnceALevel) {
   const auto window = std::make_unique<Window>();
   int most = 0;
   for (int frame = 0; frame < 200; ++frame)
-    most = std::max(most,
-                    window->at.add(seen(truth, frame, random), {}, RestSettings{}, window->sums));
-  EXPECT_EQ(most, k_rest_levels);
+    most = std::max(most, window->at.add(seen(truth, frame, random), {}, StaticDetectorSettings{},
+                                         window->sums));
+  EXPECT_EQ(most, k_static_window_levels);
 }
 
 TEST(RestWindow, GivesTheSameBitsEverywhere) {
@@ -204,7 +204,7 @@ TEST(RestWindow, GivesTheSameBitsEverywhere) {
     window->add(seen(drifted(truth, {moved, 0, 0}), frame, random));
     hash.add(window->frames());
     if (window->frames() < 2) continue;
-    const Rest rest = window->rest();
+    const StaticEstimate rest = window->rest();
     hash.add(rest.pose.pose);
     for (int i = 0; i < 6; ++i) hash.add(rest.drift_per_s(i));
     for (int i = 0; i < 6; ++i) hash.add(rest.pose.covariance(i, 5 - i));

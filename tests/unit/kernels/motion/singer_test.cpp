@@ -15,9 +15,9 @@ TEST(Singer, AgreesWithItsClosedFormWhereThatKeepsItsDigits) {
     for (const double t : {0.1, 0.25, 1.0}) {
       const SingerStep step = singer_step(damping, t);
       const double x = damping * t;
-      EXPECT_NEAR(step.acceleration_kept, std::exp(-x), 1e-13);
-      EXPECT_NEAR(step.speed_by_acceleration, (1 - std::exp(-x)) / damping, 1e-13 * t);
-      EXPECT_NEAR(step.place_by_acceleration, (x - 1 + std::exp(-x)) / (damping * damping),
+      EXPECT_NEAR(step.acceleration_decay, std::exp(-x), 1e-13);
+      EXPECT_NEAR(step.velocity_by_acceleration, (1 - std::exp(-x)) / damping, 1e-13 * t);
+      EXPECT_NEAR(step.position_by_acceleration, (x - 1 + std::exp(-x)) / (damping * damping),
                   1e-13 * t * t);
     }
   }
@@ -26,9 +26,9 @@ TEST(Singer, AgreesWithItsClosedFormWhereThatKeepsItsDigits) {
 TEST(Singer, WithoutDampingIsConstantAcceleration) {
   const double t = 0.04;
   const SingerStep step = singer_step(0, t);
-  EXPECT_DOUBLE_EQ(step.place_by_acceleration, t * t / 2);
-  EXPECT_DOUBLE_EQ(step.speed_by_acceleration, t);
-  EXPECT_DOUBLE_EQ(step.acceleration_kept, 1);
+  EXPECT_DOUBLE_EQ(step.position_by_acceleration, t * t / 2);
+  EXPECT_DOUBLE_EQ(step.velocity_by_acceleration, t);
+  EXPECT_DOUBLE_EQ(step.acceleration_decay, 1);
   Matrix3 noise;  // white jerk of density 1
   noise << std::pow(t, 5) / 20, std::pow(t, 4) / 8, std::pow(t, 3) / 6, std::pow(t, 4) / 8,
       std::pow(t, 3) / 3, t * t / 2, std::pow(t, 3) / 6, t * t / 2, t;
@@ -42,8 +42,8 @@ TEST(Singer, OfTwoHalvesIsTheWhole) {
   for (const auto& [damping, limit] : k_limits) {
     const auto matrix = [](const SingerStep& step) {
       Matrix3 f;
-      f << 1, step.seconds, step.place_by_acceleration, 0, 1, step.speed_by_acceleration, 0, 0,
-          step.acceleration_kept;
+      f << 1, step.seconds, step.position_by_acceleration, 0, 1, step.velocity_by_acceleration, 0,
+          0, step.acceleration_decay;
       return f;
     };
     const SingerStep half = singer_step(damping, 0.02);
@@ -58,15 +58,15 @@ TEST(Singer, OfTwoHalvesIsTheWhole) {
 
 TEST(Singer, SeriesAndClosedFormMeet) {
   const SingerStep below = singer_step(1, 0.1 - 1e-12), above = singer_step(1, 0.1 + 1e-12);
-  EXPECT_NEAR(below.place_by_acceleration, above.place_by_acceleration, 1e-12);
-  EXPECT_NEAR(below.acceleration_kept, above.acceleration_kept, 1e-11);
+  EXPECT_NEAR(below.position_by_acceleration, above.position_by_acceleration, 1e-12);
+  EXPECT_NEAR(below.acceleration_decay, above.acceleration_decay, 1e-11);
 }
 
 TEST(Singer, InNoTimeMovesNothing) {
   const SingerStep step = singer_step(55, 0);
-  EXPECT_EQ(step.place_by_acceleration, 0);
-  EXPECT_EQ(step.speed_by_acceleration, 0);
-  EXPECT_EQ(step.acceleration_kept, 1);
+  EXPECT_EQ(step.position_by_acceleration, 0);
+  EXPECT_EQ(step.velocity_by_acceleration, 0);
+  EXPECT_EQ(step.acceleration_decay, 1);
   EXPECT_EQ(step.noise, Matrix3::Zero());
 }
 
@@ -76,7 +76,7 @@ TEST(Singer, GivesTheSameBitsEverywhere) {
   for (int trial = 0; trial < 2000; ++trial) {
     const double damping = random.within(0, 60);
     const SingerStep step = singer_step(damping, random.within(0, 1));
-    hash.add(step.place_by_acceleration);
+    hash.add(step.position_by_acceleration);
     for (int i = 0; i < 9; ++i) hash.add(step.noise(i / 3, i % 3));
   }
   EXPECT_EQ(hash.value(), 4064670152720070781u);

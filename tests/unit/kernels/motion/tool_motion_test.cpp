@@ -35,7 +35,7 @@ struct Followed {
 TEST(ToolMotion, StandsStillAtRest) {
   Followed tool;
   tool.rest(90);
-  ASSERT_TRUE(tool.motion->rests());
+  ASSERT_TRUE(tool.motion->is_static());
   const MotionState state = tool.motion->estimate();
   EXPECT_EQ(state.velocity_m_s, Vector3(Vector3::Zero()));
   EXPECT_LT((state.pose.translation - tool.truth.translation).norm(), 4 * k_shift_sigma / 9);
@@ -48,7 +48,7 @@ TEST(ToolMotion, IsKnownFromItsFirstPoseUntilItIsForgotten) {
   EXPECT_FALSE(tool.motion->known());
   tool.rest(1);
   EXPECT_TRUE(tool.motion->known());
-  tool.motion->forget();
+  tool.motion->reset();
   EXPECT_FALSE(tool.motion->known());
 }
 
@@ -56,11 +56,11 @@ TEST(ToolMotion, RefusesStampsThatDoNotRiseAndKeepsItsState) {
   Followed tool;
   tool.rest(5);
   const MotionState before = tool.motion->estimate();
-  EXPECT_EQ(tool.motion->update(seen(tool.truth, 4, tool.random)), Reason::frame_doubled);
+  EXPECT_EQ(tool.motion->update(seen(tool.truth, 4, tool.random)), Reason::frame_duplicate);
   EXPECT_EQ(tool.motion->update(seen(tool.truth, 2, tool.random)), Reason::frame_late);
   MeasuredPoint point;
   point.covariance_m2 = 1e-6 * Matrix3::Identity();
-  EXPECT_EQ(tool.motion->update(test::frame_time(4), {&point, 1}), Reason::frame_doubled);
+  EXPECT_EQ(tool.motion->update(test::frame_time(4), {&point, 1}), Reason::frame_duplicate);
   EXPECT_EQ(tool.motion->update(test::frame_time(3), {&point, 1}), Reason::frame_late);
   EXPECT_EQ(tool.motion->estimate().covariance, before.covariance);
   EXPECT_EQ(tool.motion->estimate().pose.translation, before.pose.translation);
@@ -90,7 +90,7 @@ TEST(ToolMotion, RefusesWhatIsNoPose) {
 
 // Rms error of a one-frame prediction of a swinging tool, in a world that jitters by `jitter_m` a
 // frame. The declared jitter is 10 mm.
-double foretold_within(double jitter_m, bool loosened) {
+double prediction_rms_m(double jitter_m, bool inflated) {
   Followed tool;
   constexpr double k_declared_m = 0.01, k_rad_s = 6;
   const Vector3 middle = tool.truth.translation;
@@ -101,12 +101,12 @@ double foretold_within(double jitter_m, bool loosened) {
   constexpr int k_frames = 900, k_first = 100;
   MotionTrack track;
   ToolMotionSettings settings;
-  auto sums = std::make_unique<RestSums>();
+  auto sums = std::make_unique<StaticWindowSums>();
   for (int frame = 0; frame < k_frames; ++frame) {
     const double t = (test::frame_time(frame) - Time{}).seconds();
     world += tool.random.vector(jitter_m);
     tool.truth.translation = middle + world + Vector3(0.2 * std::sin(k_rad_s * t), 0, 0);
-    if (loosened && frame > 0) track.loosen(step);
+    if (inflated && frame > 0) track.inflate_covariance(step);
     if (frame > k_first) {
       MotionState ahead = track.estimate(*sums);
       propagate(ahead, test::frame_time(frame), settings.motion, track.noise_scale());
@@ -119,11 +119,11 @@ double foretold_within(double jitter_m, bool loosened) {
 }
 
 TEST(ToolMotion, LearnsHowMuchOfADeclaredJitterThereIs) {
-  const double quiet = foretold_within(0, false);
-  EXPECT_LT(foretold_within(0, true), 1.6 * quiet);
+  const double quiet = prediction_rms_m(0, false);
+  EXPECT_LT(prediction_rms_m(0, true), 1.6 * quiet);
   const double least = std::sqrt(3.0) * 0.01;  // no filter can predict the newest step
-  EXPECT_LT(foretold_within(0.01, true), 1.2 * least);
-  EXPECT_GT(foretold_within(0.01, false), 1.25 * least);
+  EXPECT_LT(prediction_rms_m(0.01, true), 1.2 * least);
+  EXPECT_GT(prediction_rms_m(0.01, false), 1.25 * least);
 }
 
 TEST(ToolMotion, StartsAnewAfterALongSilence) {
@@ -134,7 +134,7 @@ TEST(ToolMotion, StartsAnewAfterALongSilence) {
   const UncertainPose measured = seen(tool.truth, tool.frame, tool.random);
   ASSERT_EQ(tool.motion->update(measured), Reason::none);
   EXPECT_EQ(tool.motion->estimate().pose.translation, measured.pose.translation);
-  EXPECT_FALSE(tool.motion->rests());
+  EXPECT_FALSE(tool.motion->is_static());
 }
 
 TEST(ToolMotion, GoesOnWithOneMarkerButNeedsAPoseFirst) {
@@ -151,7 +151,7 @@ TEST(ToolMotion, GoesOnWithOneMarkerButNeedsAPoseFirst) {
     tool.truth.translation += Vector3(0.002, 0, 0);
     point = marker();
     ASSERT_EQ(tool.motion->update(test::frame_time(tool.frame++), {&point, 1}), Reason::none);
-    EXPECT_FALSE(tool.motion->rests());
+    EXPECT_FALSE(tool.motion->is_static());
   }
   const MotionState state = tool.motion->estimate();
   const double sigma = std::sqrt(state.covariance.topLeftCorner<3, 3>().trace());
@@ -179,7 +179,8 @@ TEST(ToolMotion, GrowsUnsureAlongATurnThatOneMarkerDoesNotShow) {
     const MeasuredPoint point{model, tool.truth * model, 9e-8 * Matrix3::Identity()};
     ASSERT_EQ(tool.motion->update(test::frame_time(tool.frame++), {&point, 1}), Reason::none);
   }
-  const double stroke = k_angular_stroke_1_s * 2 * 0.2 * 0.2;  // rad, twice the angle error
+  const double stroke =
+      k_angular_occlusion_share_1_s * 2 * 0.2 * 0.2;  // rad, twice the angle error
   EXPECT_GT(tool.motion->estimate().covariance(k_rotation + 2, k_rotation + 2),
             0.9 * stroke * stroke / 6);
 }
@@ -273,7 +274,7 @@ TEST(ToolMotion, StatesCorrelatedErrorsBesideItsCovariance) {
       const Vector3 error = motion->estimate().pose.translation - truth.translation;
       with += error.dot(total.inverse() * error) / 3;
       without += error.dot(random_part.topLeftCorner<3, 3>().inverse() * error) / 3;
-      rests += motion->rests() ? 1 : 0;
+      rests += motion->is_static() ? 1 : 0;
       ++n;
     }
   }

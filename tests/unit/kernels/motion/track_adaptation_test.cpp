@@ -21,11 +21,11 @@ constexpr double k_frame_s = 0.022222222;
 
 struct Track {
   MotionTrack at;
-  std::unique_ptr<RestSums> sums = std::make_unique<RestSums>();
+  std::unique_ptr<StaticWindowSums> sums = std::make_unique<StaticWindowSums>();
   ToolMotionSettings settings;
 
   // Without static detection: the estimate is the filter's.
-  static Track restless() {
+  static Track without_static_detection() {
     Track track;
     track.settings.rest.frames_min = 1000;
     return track;
@@ -51,12 +51,12 @@ double clamped(double scale, const AdaptationSettings& settings) {
 // chi-square, by the number of frames elapsed, at most four.
 TEST(TrackAdaptation, MovesEachFactorByItsChiSquareAndTheTimePassed) {
   Random random(1);
-  Track track = Track::restless();
+  Track track = Track::without_static_detection();
   track.settings.linear = {9, 0.5, 3, 2};
   track.settings.angular = {7, 0.3, 5, 4};
-  track.settings.briskest_frames = 50;
-  track.settings.partial_noise = 1.5;
-  double linear = 1, angular = 1, briskest_linear = 1, briskest_angular = 1;
+  track.settings.peak_scale_frames = 50;
+  track.settings.partial_visibility_noise = 1.5;
+  double linear = 1, angular = 1, linear_scale_max = 1, angular_scale_max = 1;
   Time time;
   Pose truth{random.rotation(), random.vector(0.3)};
   int at_floor = 0, at_ceiling = 0;
@@ -70,22 +70,22 @@ TEST(TrackAdaptation, MovesEachFactorByItsChiSquareAndTheTimePassed) {
     ASSERT_EQ(track.update(seen(truth, time, random)), Reason::none);
     if (frame == 0) {
       EXPECT_EQ(track.at.noise_scale().linear, 1);
-      EXPECT_EQ(track.at.partial_noise_scale(track.settings).angular, 1.5);
+      EXPECT_EQ(track.at.partial_visibility_noise_scale(track.settings).angular, 1.5);
       continue;
     }
     const Correction& correction = track.at.last_correction();
     const double frames = std::min(step.seconds() / k_frame_s, 4.0);
-    const double by_linear = std::min(correction.linear_chi_square / 3, 2.0);
-    const double by_angular = std::min(correction.angular_chi_square / 3, 4.0);
+    const double by_linear = std::min(correction.linear_nis / 3, 2.0);
+    const double by_angular = std::min(correction.angular_nis / 3, 4.0);
     linear = clamped(linear * (1 + (by_linear - 1) * frames / 9), track.settings.linear);
     angular = clamped(angular * (1 + (by_angular - 1) * frames / 7), track.settings.angular);
-    briskest_linear = std::max(linear, briskest_linear * (1 - 1.0 / 50));
-    briskest_angular = std::max(angular, briskest_angular * (1 - 1.0 / 50));
+    linear_scale_max = std::max(linear, linear_scale_max * (1 - 1.0 / 50));
+    angular_scale_max = std::max(angular, angular_scale_max * (1 - 1.0 / 50));
     EXPECT_NEAR(track.at.noise_scale().linear, linear, 1e-9) << frame;
     EXPECT_NEAR(track.at.noise_scale().angular, angular, 1e-9) << frame;
-    const NoiseScale partial = track.at.partial_noise_scale(track.settings);
-    EXPECT_NEAR(partial.linear, 1.5 * briskest_linear, 1e-9) << frame;
-    EXPECT_NEAR(partial.angular, 1.5 * briskest_angular, 1e-9) << frame;
+    const NoiseScale partial = track.at.partial_visibility_noise_scale(track.settings);
+    EXPECT_NEAR(partial.linear, 1.5 * linear_scale_max, 1e-9) << frame;
+    EXPECT_NEAR(partial.angular, 1.5 * angular_scale_max, 1e-9) << frame;
     at_floor += linear == 0.5 ? 1 : 0;
     at_ceiling += angular == 5 ? 1 : 0;
     ASSERT_FALSE(HasFailure()) << frame;
@@ -98,7 +98,7 @@ TEST(TrackAdaptation, MovesEachFactorByItsChiSquareAndTheTimePassed) {
 // them.
 TEST(TrackAdaptation, PropagatesWithItsFactorsAndCorrects) {
   Random random(2);
-  Track track = Track::restless();
+  Track track = Track::without_static_detection();
   Pose truth{random.rotation(), random.vector(0.3)};
   for (int frame = 0; frame < 60; ++frame) {
     const Time time = test::frame_time(frame);
@@ -120,8 +120,8 @@ TEST(TrackAdaptation, PropagatesWithItsFactorsAndCorrects) {
 // innovations; the linear noise factor follows the remaining share of the innovation.
 TEST(TrackAdaptation, CountsALooseningByTheCorrelationOfInnovations) {
   Random random(3);
-  Track track = Track::restless();
-  track.settings.loosening = {6, 0.05, 4, 0.6};
+  Track track = Track::without_static_detection();
+  track.settings.inflation = {6, 0.05, 4, 0.6};
   double factor = 1, linear = 1;
   Vector3 last = Vector3::Zero();
   Pose truth{random.rotation(), random.vector(0.3)};
@@ -133,7 +133,7 @@ TEST(TrackAdaptation, CountsALooseningByTheCorrelationOfInnovations) {
     Matrix6 step = test::random_covariance<6>(random, 0.002);
     if (frame > 0) {
       const MotionCovariance before = track.estimate().covariance;
-      track.at.loosen(step);
+      track.at.inflate_covariance(step);
       const MotionCovariance added = track.estimate().covariance - before;
       for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j)
@@ -156,8 +156,7 @@ TEST(TrackAdaptation, CountsALooseningByTheCorrelationOfInnovations) {
     const double before = factor;
     factor = std::min(std::max(factor * (1 - turned), 0.05), 4.0);
     last = correction.linear_whitened;
-    const double ratio =
-        std::min(correction.linear_chi_square / 3, track.settings.linear.innovation_max);
+    const double ratio = std::min(correction.linear_nis / 3, track.settings.linear.nis_ratio_max);
     linear =
         clamped(linear * (1 + (ratio - 1) * (1 - share) * frames / track.settings.linear.frames),
                 track.settings.linear);
@@ -179,7 +178,7 @@ TEST(TrackAdaptation, CountsALooseningByTheCorrelationOfInnovations) {
 TEST(TrackAdaptation, FollowsMarkersWithStrokesAndTheBriskestNoise) {
   for (const int poses : {1, 40}) {
     Random random(4);
-    Track track = Track::restless();
+    Track track = Track::without_static_detection();
     Pose truth{random.rotation(), random.vector(0.3)};
     const auto move_on = [&] { truth.translation += Vector3(0.004, 0.001, 0); };
     for (int frame = 100; frame < 100 + poses; ++frame, move_on())
@@ -197,11 +196,11 @@ TEST(TrackAdaptation, FollowsMarkersWithStrokesAndTheBriskestNoise) {
       const double seconds = (time - expected.time).seconds();
       const double hidden_s = (time - test::frame_time(last)).seconds();
       propagate(expected, time, track.settings.motion,
-                track.at.partial_noise_scale(track.settings));
-      add_strokes(expected.covariance, k_position, expected.velocity_m_s,
-                  linear_stroke_1_s(expected.velocity_m_s), hidden_s, seconds);
-      add_strokes(expected.covariance, k_rotation, expected.angular_velocity_rad_s,
-                  k_angular_stroke_1_s, hidden_s, seconds);
+                track.at.partial_visibility_noise_scale(track.settings));
+      add_occlusion_noise(expected.covariance, k_position, expected.velocity_m_s,
+                          linear_occlusion_share_1_s(expected.velocity_m_s), hidden_s, seconds);
+      add_occlusion_noise(expected.covariance, k_rotation, expected.angular_velocity_rad_s,
+                          k_angular_occlusion_share_1_s, hidden_s, seconds);
       const std::size_t count = frame % 2 == 0 ? 1 : 3;  // a third marker is ignored
       for (std::size_t i = 0; i < std::min<std::size_t>(count, 2); ++i)
         (void)correct_by_point(expected, points[i]);

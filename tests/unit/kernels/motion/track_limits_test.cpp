@@ -16,11 +16,11 @@ using test::Random;
 
 struct Track {
   MotionTrack at;
-  std::unique_ptr<RestSums> sums = std::make_unique<RestSums>();
+  std::unique_ptr<StaticWindowSums> sums = std::make_unique<StaticWindowSums>();
   ToolMotionSettings settings;
 
   // Without static detection: the estimate is the filter's.
-  static Track restless() {
+  static Track without_static_detection() {
     Track track;
     track.settings.rest.frames_min = 1000;
     return track;
@@ -67,7 +67,7 @@ TEST(TrackLimits, TakeAPoseAtEachAndNoneBeyond) {
 TEST(TrackLimits, GoOnAfterASilenceOfTheGapAndNoLonger) {
   for (const std::int64_t beyond : {0, 1}) {
     Random random(6);
-    Track track = Track::restless();
+    Track track = Track::without_static_detection();
     Pose truth{random.rotation(), random.vector(0.3)};
     for (int frame = 0; frame < 20; ++frame) {
       truth.translation += random.vector(0.02);
@@ -76,7 +76,7 @@ TEST(TrackLimits, GoOnAfterASilenceOfTheGapAndNoLonger) {
     EXPECT_NE(track.at.noise_scale().linear, 1);
     const Time late = test::frame_time(19) + track.settings.gap_max + Duration{beyond};
     MeasuredPoint point{Vector3::Zero(), truth.translation, 1e-4 * Matrix3::Identity()};
-    Track markers = Track::restless();
+    Track markers = Track::without_static_detection();
     markers.at = track.at;
     EXPECT_EQ(markers.update(late, {&point, 1}),
               beyond == 0 ? Reason::none : Reason::too_few_markers);
@@ -98,33 +98,34 @@ TEST(TrackLimits, LeaveNothingOfAForgottenMotion) {
   Matrix6 step = Matrix6::Identity() * 1e-6;
   for (int frame = 0; frame < 60; ++frame) {
     truth.translation += random.vector(0.01);
-    if (frame % 7 == 3) used.at.loosen(step);
+    if (frame % 7 == 3) used.at.inflate_covariance(step);
     ASSERT_EQ(used.update(seen(truth, test::frame_time(frame), random)), Reason::none);
   }
-  used.at.forget();
+  used.at.reset();
   EXPECT_FALSE(used.at.known());
-  EXPECT_FALSE(used.at.rests());
+  EXPECT_FALSE(used.at.is_static());
   EXPECT_EQ(used.at.noise_scale().linear, 1);
   EXPECT_EQ(used.at.noise_scale().angular, 1);
-  EXPECT_EQ(used.at.partial_noise_scale(used.settings).linear, used.settings.partial_noise);
+  EXPECT_EQ(used.at.partial_visibility_noise_scale(used.settings).linear,
+            used.settings.partial_visibility_noise);
   for (int frame = 0; frame < 120; ++frame) {  // time stamps begin before those of the reset motion
     if (frame > 60) truth.translation += random.vector(0.004);
     const UncertainPose measured = seen(truth, test::frame_time(frame), random);
     // Also before the second pose, whose innovation is the first one.
     if (frame == 1 || frame % 9 == 8) {
-      used.at.loosen(step);
-      fresh.at.loosen(step);
+      used.at.inflate_covariance(step);
+      fresh.at.inflate_covariance(step);
     }
     ASSERT_EQ(used.update(measured), Reason::none);
     ASSERT_EQ(fresh.update(measured), Reason::none);
-    ASSERT_EQ(used.at.rests(), fresh.at.rests()) << frame;
+    ASSERT_EQ(used.at.is_static(), fresh.at.is_static()) << frame;
     ASSERT_EQ(used.estimate().covariance, fresh.estimate().covariance) << frame;
     ASSERT_EQ(used.estimate().pose.translation, fresh.estimate().pose.translation) << frame;
     ASSERT_EQ(used.at.noise_scale().linear, fresh.at.noise_scale().linear) << frame;
     ASSERT_EQ(used.at.noise_scale().angular, fresh.at.noise_scale().angular) << frame;
-    ASSERT_EQ(used.at.last_correction().chi_square, fresh.at.last_correction().chi_square);
-    ASSERT_EQ(used.at.partial_noise_scale(used.settings).linear,
-              fresh.at.partial_noise_scale(fresh.settings).linear);
+    ASSERT_EQ(used.at.last_correction().nis, fresh.at.last_correction().nis);
+    ASSERT_EQ(used.at.partial_visibility_noise_scale(used.settings).linear,
+              fresh.at.partial_visibility_noise_scale(fresh.settings).linear);
   }
 }
 
@@ -132,9 +133,9 @@ TEST(TrackLimits, LeaveNothingOfAForgottenMotion) {
 // them.
 TEST(TrackAtRest, EstimatesWhatTheWindowSaysAndWhatTheFilterSaysOfAccelerations) {
   Random random(8);
-  Track resting, filter = Track::restless();
-  auto window = std::make_unique<RestWindow>();
-  auto sums = std::make_unique<RestSums>();
+  Track resting, filter = Track::without_static_detection();
+  auto window = std::make_unique<StaticDetector>();
+  auto sums = std::make_unique<StaticWindowSums>();
   Pose truth{random.rotation(), random.vector(0.3)};
   CorrelatedErrors correlated;
   correlated.fast = test::random_covariance<6>(random, 0.0001);
@@ -148,17 +149,17 @@ TEST(TrackAtRest, EstimatesWhatTheWindowSaysAndWhatTheFilterSaysOfAccelerations)
     ASSERT_EQ(update.reason, Reason::none);
     ASSERT_EQ(filter.at.update(measured, correlated, filter.settings, *filter.sums).reason,
               Reason::none);
-    EXPECT_EQ(update.rest_tests, window->add(measured, correlated, resting.settings.rest, *sums));
-    ASSERT_EQ(resting.at.rests(), window->rests());
+    EXPECT_EQ(update.static_tests, window->add(measured, correlated, resting.settings.rest, *sums));
+    ASSERT_EQ(resting.at.is_static(), window->is_static());
     EXPECT_EQ(resting.at.correlated_covariance(*resting.sums), window->correlated(*sums));
     const MotionState state = resting.estimate();
     EXPECT_EQ(state.time, measured.time);
-    if (!window->rests()) {
+    if (!window->is_static()) {
       EXPECT_EQ(state.covariance, filter.estimate().covariance);
       continue;
     }
     ++rests;
-    const Rest rest = window->rest(*sums);
+    const StaticEstimate rest = window->rest(*sums);
     drifts += rest.drift_per_s.isZero() ? 0 : 1;
     EXPECT_EQ(state.pose.translation, rest.pose.pose.translation);
     EXPECT_EQ(state.pose.rotation.coeffs(), rest.pose.pose.rotation.coeffs());
@@ -188,34 +189,35 @@ TEST(TrackAtRest, EstimatesWhatTheWindowSaysAndWhatTheFilterSaysOfAccelerations)
   EXPECT_GT(drifts, 3);
 }
 
-// After a static phase single markers continue from the static estimate, inflated by what loosen()
-// has added since.
+// After a static phase single markers continue from the static estimate, inflated by what
+// inflate_covariance() has added since.
 TEST(TrackAtRest, GivesMarkersWhatWasLoosenedSince) {
   Random random(9);
   Track track;
   const Pose truth{random.rotation(), random.vector(0.3)};
   for (int frame = 0; frame < 40; ++frame)
     ASSERT_EQ(track.update(seen(truth, test::frame_time(frame), random)), Reason::none);
-  ASSERT_TRUE(track.at.rests());
+  ASSERT_TRUE(track.at.is_static());
   const Matrix6 step = test::random_covariance<6>(random, 0.001);
   MotionState expected = track.estimate();
-  track.at.loosen(step);
+  track.at.inflate_covariance(step);
   EXPECT_EQ(track.estimate().covariance, expected.covariance) << "a rest's mean is not loosened";
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j)
       expected.covariance(i < 3 ? i : 6 + i, j < 3 ? j : 6 + j) += step(i, j);
   const Time time = test::frame_time(40);
-  propagate(expected, time, track.settings.motion, track.at.partial_noise_scale(track.settings));
+  propagate(expected, time, track.settings.motion,
+            track.at.partial_visibility_noise_scale(track.settings));
   const double seconds = (test::frame_time(1) - Time{}).seconds();
-  add_strokes(expected.covariance, k_position, expected.velocity_m_s,
-              linear_stroke_1_s(expected.velocity_m_s), seconds, seconds);
-  add_strokes(expected.covariance, k_rotation, expected.angular_velocity_rad_s,
-              k_angular_stroke_1_s, seconds, seconds);
+  add_occlusion_noise(expected.covariance, k_position, expected.velocity_m_s,
+                      linear_occlusion_share_1_s(expected.velocity_m_s), seconds, seconds);
+  add_occlusion_noise(expected.covariance, k_rotation, expected.angular_velocity_rad_s,
+                      k_angular_occlusion_share_1_s, seconds, seconds);
   MeasuredPoint point{Vector3(0.02, 0, 0), Vector3::Zero(), 9e-8 * Matrix3::Identity()};
   point.measured_m = truth * point.model_m;
   (void)correct_by_point(expected, point);
   ASSERT_EQ(track.update(time, {&point, 1}), Reason::none);
-  EXPECT_FALSE(track.at.rests());
+  EXPECT_FALSE(track.at.is_static());
   const double size = expected.covariance.norm();
   EXPECT_LT((track.estimate().covariance - expected.covariance).norm(), 1e-9 * size);
   EXPECT_LT((track.estimate().pose.translation - expected.pose.translation).norm(), 1e-12);
@@ -236,15 +238,15 @@ TEST(TrackAtRest, IsThatOfTheToolMotionThatOwnsItsSums) {
     ASSERT_EQ(track.at.update(measured, correlated, track.settings, *track.sums).reason,
               Reason::none);
     EXPECT_TRUE(motion->known());
-    EXPECT_EQ(motion->rests(), track.at.rests());
+    EXPECT_EQ(motion->is_static(), track.at.is_static());
     EXPECT_EQ(motion->estimate().covariance, track.estimate().covariance);
     EXPECT_EQ(motion->noise_scale().linear, track.at.noise_scale().linear);
     EXPECT_EQ(motion->noise_scale().angular, track.at.noise_scale().angular);
-    EXPECT_EQ(motion->last_correction().chi_square, track.at.last_correction().chi_square);
+    EXPECT_EQ(motion->last_correction().nis, track.at.last_correction().nis);
     EXPECT_EQ(motion->correlated_covariance(), track.at.correlated_covariance(*track.sums));
   }
-  EXPECT_TRUE(motion->rests());
-  EXPECT_EQ(motion->update(seen(truth, test::frame_time(39), random)), Reason::frame_doubled);
+  EXPECT_TRUE(motion->is_static());
+  EXPECT_EQ(motion->update(seen(truth, test::frame_time(39), random)), Reason::frame_duplicate);
 }
 
 // move() transforms a motion with its frame, static or not.
@@ -257,7 +259,7 @@ TEST(TrackAtRest, MovesWithItsFrame) {
       if (!rests) truth.translation += Vector3(0.01, 0, 0);
       ASSERT_EQ(track.update(seen(truth, test::frame_time(frame), random)), Reason::none);
     }
-    ASSERT_EQ(track.at.rests(), rests);
+    ASSERT_EQ(track.at.is_static(), rests);
     const MotionState before = track.estimate();
     const Pose by{from_rotation_vector({0.001, 0.002, -0.003}), {0.01, 0.02, 0.03}};
     track.at.move(by);
@@ -265,8 +267,8 @@ TEST(TrackAtRest, MovesWithItsFrame) {
     EXPECT_LT(pose_difference(after.pose, by * before.pose).norm(), rests ? 1e-4 : 1e-12);
     EXPECT_EQ(after.time, before.time);
     if (rests) continue;
-    EXPECT_LT((after.covariance - moved_state(before, by).covariance).norm(), 1e-15);
-    EXPECT_EQ(after.velocity_m_s, Vector3(moved_state(before, by).velocity_m_s));
+    EXPECT_LT((after.covariance - transformed_state(before, by).covariance).norm(), 1e-15);
+    EXPECT_EQ(after.velocity_m_s, Vector3(transformed_state(before, by).velocity_m_s));
   }
 }
 }  // namespace

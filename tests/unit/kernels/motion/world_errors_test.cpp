@@ -15,7 +15,7 @@ using test::Random;
 constexpr double k_between_s = 0.2;
 constexpr double k_kept = 0.9;
 constexpr double k_drift_m = 0.002, k_drift_rad = 0.002, k_fit_m = 0.0004, k_fit_rad = 0.003;
-using SharedErrors = Eigen::Matrix<double, k_shared_errors, 1>;
+using SystematicErrors = Eigen::Matrix<double, k_shared_errors, 1>;
 
 Matrix6 spread(double shift, double turn) {
   Matrix6 covariance = Matrix6::Zero();
@@ -31,27 +31,27 @@ Pose moved(const Pose& pose, const Vector6& by) {
 // A static body; the headset's error is `drift` times the declared one.
 class Body {
  public:
-  Body(double drift, const SharedErrors& errors, std::uint64_t seed)
+  Body(double drift, const SystematicErrors& errors, std::uint64_t seed)
       : drift_(drift), errors_(errors), random_(seed) {
-    place_ = {random_.rotation(), Vector3(0.4, 0.1, -0.3)};
+    body_pose_ = {random_.rotation(), Vector3(0.4, 0.1, -0.3)};
     head_ = drift_ * walked(1);
   }
-  BodySight sight() {
+  BodyMeasurement measurement() {
     head_ = k_kept * head_ + drift_ * walked(std::sqrt(1 - k_kept * k_kept));
-    BodySight seen;
-    seen.walked = {first_ ? 0 : k_kept, spread(k_drift_m, k_drift_rad)};
+    BodyMeasurement measured;
+    measured.walked = {first_ ? 0 : k_kept, spread(k_drift_m, k_drift_rad)};
     first_ = false;
-    seen.covariance = spread(k_fit_m, k_fit_rad);
+    measured.covariance = spread(k_fit_m, k_fit_rad);
     // As for a body that moves across the image: one standard deviation moves it by some
     // millimetres.
     for (int error = 0; error < k_shared_errors; ++error)
-      seen.by_errors.col(error) << 0.004 * random_.vector(1), 0.002 * random_.vector(1);
+      measured.by_errors.col(error) << 0.004 * random_.vector(1), 0.002 * random_.vector(1);
     Vector6 noise;
     noise << k_fit_m * random_.vector(1), k_fit_rad * random_.vector(1);
-    seen.T_world_body = moved(place_, head_ + noise + seen.by_errors * errors_);
-    return seen;
+    measured.T_world_body = moved(body_pose_, head_ + noise + measured.by_errors * errors_);
+    return measured;
   }
-  void move(const Vector3& by) { place_.translation += by; }
+  void move(const Vector3& by) { body_pose_.translation += by; }
 
  private:
   Vector6 walked(double share) {
@@ -60,29 +60,29 @@ class Body {
     return out;
   }
   double drift_;
-  SharedErrors errors_;
+  SystematicErrors errors_;
   Random random_;
-  Pose place_;
+  Pose body_pose_;
   Vector6 head_;
   bool first_ = true;
 };
 
-void see(const BodySight& sight, WorldErrors& world) {
-  ASSERT_TRUE(world.add(sight));
-  EXPECT_FALSE(world.add(sight)) << "one waits";
-  for (std::size_t i = 0; i < k_walk_factors.size(); ++i) world.work();
+void see(const BodyMeasurement& measurement, WorldErrors& world) {
+  ASSERT_TRUE(world.add(measurement));
+  EXPECT_FALSE(world.add(measurement)) << "one waits";
+  for (std::size_t i = 0; i < k_head_noise_factors.size(); ++i) world.work();
   EXPECT_TRUE(world.idle());
 }
 
-WorldErrors seen(Body& body, int sights) {
+WorldErrors filtered(Body& body, int count) {
   WorldErrors world;
-  for (int i = 0; i < sights; ++i) see(body.sight(), world);
+  for (int i = 0; i < count; ++i) see(body.measurement(), world);
   return world;
 }
 
 std::size_t likeliest(const WorldErrors& world) {
   std::size_t best = 0;
-  for (std::size_t i = 1; i < k_walk_factors.size(); ++i)
+  for (std::size_t i = 1; i < k_head_noise_factors.size(); ++i)
     if (world.of_factor(i).log_likelihood > world.of_factor(best).log_likelihood) best = i;
   return best;
 }
@@ -92,11 +92,11 @@ TEST(WorldErrors, LieWithinTheirCovariance) {
   constexpr int k_runs = 60;
   for (int run = 0; run < k_runs; ++run) {
     Random random(static_cast<std::uint64_t>(run) + 1);
-    SharedErrors errors;
+    SystematicErrors errors;
     for (int i = 0; i < k_shared_errors; ++i) errors(i) = random.normal();
     Body body(1, errors, static_cast<std::uint64_t>(run) + 100);
-    const WorldFindings found = seen(body, 40).of_factor(1);
-    const SharedErrors off = found.errors - errors;
+    const WorldErrorEstimate found = filtered(body, 40).of_factor(1);
+    const SystematicErrors off = found.errors - errors;
     squares += off.dot(found.covariance.llt().solve(off)) / k_shared_errors;
     EXPECT_LT(found.covariance.diagonal().maxCoeff(), 0.1);
   }
@@ -105,44 +105,44 @@ TEST(WorldErrors, LieWithinTheirCovariance) {
 }
 
 TEST(WorldErrors, LikeliestFactorIsTheHeadsetsOwn) {
-  for (std::size_t factor = 0; factor < k_walk_factors.size(); ++factor) {
-    Body body(k_walk_factors[factor], SharedErrors::Zero(), factor + 1);
-    EXPECT_EQ(likeliest(seen(body, 100)), factor);
+  for (std::size_t factor = 0; factor < k_head_noise_factors.size(); ++factor) {
+    Body body(k_head_noise_factors[factor], SystematicErrors::Zero(), factor + 1);
+    EXPECT_EQ(likeliest(filtered(body, 100)), factor);
   }
 }
 
 // A single outlier, for example of a wrong labeling, does not change the estimates.
 TEST(WorldErrors, LeaveOutASightThatNothingExplains) {
-  SharedErrors errors = SharedErrors::Zero();
+  SystematicErrors errors = SystematicErrors::Zero();
   errors(4) = 2;
   Body body(1, errors, 3), same(1, errors, 3);
-  WorldErrors world = seen(body, 60), other = seen(same, 60);
-  BodySight wrong = body.sight();
+  WorldErrors world = filtered(body, 60), other = filtered(same, 60);
+  BodyMeasurement wrong = body.measurement();
   wrong.T_world_body.translation += Vector3(0.1, 0, 0);
   wrong.walked = {1, Matrix6::Zero()};
   see(wrong, world);
   EXPECT_TRUE(world.of_factor(1).errors.isApprox(other.of_factor(1).errors));
-  EXPECT_EQ(world.sights(), 61);
+  EXPECT_EQ(world.measurement_count(), 61);
 }
 
 // After a jump of the headset's world the body's pose is unknown again; the estimated errors stay.
 TEST(WorldErrors, BeginAnewWhereTheWorldJumps) {
-  SharedErrors errors = SharedErrors::Zero();
+  SystematicErrors errors = SystematicErrors::Zero();
   errors(5) = 3;
   Body body(1, errors, 4);
-  WorldErrors world = seen(body, 60);
+  WorldErrors world = filtered(body, 60);
   body.move({0.2, 0, 0});
-  for (int i = 0; i < 60; ++i) see(body.sight(), world);
+  for (int i = 0; i < 60; ++i) see(body.measurement(), world);
   EXPECT_NEAR(world.of_factor(1).errors(5), 3, 0.5);
   EXPECT_LT(world.of_factor(1).errors.head<5>().norm(), 0.7);
 }
 
 TEST(WorldErrors, GiveTheSameBitsEverywhere) {
-  Body body(1, SharedErrors::Ones(), 5);
-  const WorldErrors world = seen(body, 30);
+  Body body(1, SystematicErrors::Ones(), 5);
+  const WorldErrors world = filtered(body, 30);
   test::BitHash hash;
-  for (std::size_t i = 0; i < k_walk_factors.size(); ++i) {
-    const WorldFindings found = world.of_factor(i);
+  for (std::size_t i = 0; i < k_head_noise_factors.size(); ++i) {
+    const WorldErrorEstimate found = world.of_factor(i);
     for (int k = 0; k < k_shared_errors; ++k) hash.add(found.errors(k));
     hash.add(found.covariance(2, 4));
     hash.add(found.log_likelihood);

@@ -50,7 +50,7 @@ std::vector<UncertainPose> resampled(const std::vector<UncertainPose>& samples,
   const auto take = [&] {
     UncertainPose point;
     for (Next next = resampler.next(point); next != Next::none; next = resampler.next(point)) {
-      if (next == Next::last_moves) points.pop_back();
+      if (next == Next::replace_last) points.pop_back();
       points.push_back(point);
     }
   };
@@ -119,7 +119,7 @@ TEST(ResampleStroke, LetsANearEndTakeTheLastPointsPlace) {
 
 // Mean squared Mahalanobis distance of the points from the ground truth at their time, by the
 // stated covariance; 6 if it is consistent.
-enum class Noise { white, common, filtered };
+enum class Noise { white, common, gauss_markov };
 double normalised_error(double speed_m_s, Noise noise) {
   test::Random random(17);
   const Eigen::Matrix<double, 6, 6> factor = declared_noise().llt().matrixL();
@@ -132,12 +132,13 @@ double normalised_error(double speed_m_s, Noise noise) {
   std::int64_t count = 0;
   for (int stroke = 0; stroke < test::repetitions(100, 25); ++stroke) {
     std::vector<UncertainPose> samples;
-    Eigen::Matrix<double, 6, 1> walk = drawn();
+    Eigen::Matrix<double, 6, 1> unit_error = drawn();
     const double seconds = 0.1 / speed_m_s;
     for (double t = 0; t < seconds; t += 0.004) {
-      if (noise == Noise::white) walk = drawn();
-      if (noise == Noise::filtered) walk = 0.95 * walk + std::sqrt(1 - 0.95 * 0.95) * drawn();
-      const Eigen::Matrix<double, 6, 1> error = factor * walk;
+      if (noise == Noise::white) unit_error = drawn();
+      if (noise == Noise::gauss_markov)
+        unit_error = 0.95 * unit_error + std::sqrt(1 - 0.95 * 0.95) * drawn();
+      const Eigen::Matrix<double, 6, 1> error = factor * unit_error;
       UncertainPose sample = on_a_ring(t, speed_m_s);
       sample.pose.translation += error.head<3>();
       sample.pose.rotation =
@@ -162,7 +163,7 @@ TEST(ResampleStroke, ComesBackWithinItsCovarianceHoweverTheNoiseIsCorrelated) {
     // of the mean of 100 chi-squares: 0.35.
     EXPECT_NEAR(normalised_error(speed, Noise::common), 6, test::repetitions(11, 22) / 10.0)
         << speed;
-    EXPECT_LT(normalised_error(speed, Noise::filtered), 6.5) << speed;
+    EXPECT_LT(normalised_error(speed, Noise::gauss_markov), 6.5) << speed;
     // For white noise the covariance between two samples is conservative, at most by a factor of 2.
     const double white = normalised_error(speed, Noise::white);
     EXPECT_LT(white, 6) << speed;
@@ -174,8 +175,9 @@ TEST(ResampleStroke, AddsWhatAHandMayHaveDoneBetweenSamplesFarApart) {
   const std::vector<UncertainPose> apart = {at(0, {0, 0, 0}), at(0.09, {0.004, 0, 0})};
   const auto points = resampled(apart, {.spacing_m = 0.002});
   ASSERT_EQ(points.size(), 3u);
-  const double bow = 2.3 * 0.25 * 0.09 * 0.09 / 2;
-  EXPECT_NEAR(points[1].covariance(0, 0), k_sigma_m * k_sigma_m + bow * bow, 1e-15);
+  const double acceleration_offset_m = 2.3 * 0.25 * 0.09 * 0.09 / 2;
+  EXPECT_NEAR(points[1].covariance(0, 0),
+              k_sigma_m * k_sigma_m + acceleration_offset_m * acceleration_offset_m, 1e-15);
   EXPECT_EQ(points[0].covariance, declared_noise());
 }
 
@@ -211,10 +213,11 @@ TEST(ResampleStroke, RefusesSettingsThatNoStrokeCanHave) {
 TEST(ResampleStroke, EndsAfterTheDeclaredPointsOfTheWorstSample) {
   const StrokeSettings settings{.spacing_m = 0.001, .turn_rad = 0.05};
   const std::vector<UncertainPose> worst = {
-      at(0, {0, 0, 0}), at(0.1, {0.001 * k_stroke_reach, 0, 0}, from_rotation_vector({3.1, 0, 0}))};
+      at(0, {0, 0, 0}),
+      at(0.1, {0.001 * k_stroke_step_max, 0, 0}, from_rotation_vector({3.1, 0, 0}))};
   const auto points = resampled(worst, settings);
-  EXPECT_LE(points.size(), static_cast<std::size_t>(k_stroke_reach + 63 + 2));
-  EXPECT_GE(points.size(), static_cast<std::size_t>(k_stroke_reach));
+  EXPECT_LE(points.size(), static_cast<std::size_t>(k_stroke_step_max + 63 + 2));
+  EXPECT_GE(points.size(), static_cast<std::size_t>(k_stroke_step_max));
 }
 
 TEST(ResampleStroke, GivesNothingWithoutSamplesAndOnePointOfOne) {
@@ -233,7 +236,7 @@ TEST(ResampleStroke, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
   constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double k_infinity = std::numeric_limits<double>::infinity();
   for (double S::*setting :
-       {&S::spacing_m, &S::turn_rad, &S::acceleration_m_s2, &S::turn_acceleration_rad_s2}) {
+       {&S::spacing_m, &S::turn_rad, &S::acceleration_m_s2, &S::angular_acceleration_rad_s2}) {
     EXPECT_EQ(reason_of([&](S& s) { s.*setting = 1e-9; }), Reason::none);
     for (const double wrong : {0.0, -1e-9, k_nan, k_infinity}) {
       EXPECT_EQ(reason_of([&](S& s) { s.*setting = wrong; }), Reason::out_of_range) << wrong;
@@ -277,13 +280,13 @@ TEST(ResampleStroke, AddsAHandsAccelerationAlongAndAboutEachAxis) {
   ++apart[1].time.nanoseconds;  // half of it is rounded up
   apart[1].covariance = 3 * declared_noise();
   const auto points = resampled(
-      apart, {.spacing_m = 0.002, .acceleration_m_s2 = 3, .turn_acceleration_rad_s2 = 20});
+      apart, {.spacing_m = 0.002, .acceleration_m_s2 = 3, .angular_acceleration_rad_s2 = 20});
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(points[1].time.nanoseconds, 45'000'001);
-  const double bow = 0.5 * 0.25 * 0.090000001 * 0.090000001;
+  const double deviation_s2 = 0.5 * 0.25 * 0.090000001 * 0.090000001;
   Matrix6 expected = 2 * declared_noise();
   for (int i = 0; i < 6; ++i) {
-    const double off = bow * (i < 3 ? 3 : 20);
+    const double off = deviation_s2 * (i < 3 ? 3 : 20);
     expected(i, i) += off * off;
   }
   EXPECT_LT((points[1].covariance - expected).norm(), 1e-12 * expected.norm());

@@ -56,19 +56,19 @@ TEST(Assign, PrefersMoreMarkersToASmallerResidualAndThatToTheFirstTool) {
   EXPECT_EQ(outcome_of({fewer, more}).chosen, (std::vector<int>{-1, 0}));
   EXPECT_EQ(outcome_of({worse, fewer}).chosen, (std::vector<int>{-1, 0}));
   EXPECT_EQ(outcome_of({fewer, fewer}).chosen, (std::vector<int>{0, -1}));
-  EXPECT_EQ(outcome_of({fewer, fewer}).reasons[1], Reason::taken_by_other);
+  EXPECT_EQ(outcome_of({fewer, fewer}).reasons[1], Reason::markers_assigned_elsewhere);
 }
 
 TEST(Assign, LetsTheToolThatWasPredictedThereKeepWhatNoiseAloneWouldGiveAway) {
-  const auto stranger = labelings_of({labeling_of({0, 1, 2, 3}, 0.001)});
+  const auto other_tool = labelings_of({labeling_of({0, 1, 2, 3}, 0.001)});
   const auto owner = [](double rms_m) {
     Labeling labeling = labeling_of({0, 1, 2, 3}, rms_m);
-    labeling.predicted_worth_m2 = 2e-5;
+    labeling.log_prior_ratio_m2 = 2e-5;
     return labelings_of({labeling});
   };
   // Sums of squares: the owner's 4 rms^2 may exceed the stranger's 4e-6 by 2e-5.
-  EXPECT_EQ(outcome_of({stranger, owner(0.0024)}).chosen, (std::vector<int>{-1, 0}));
-  EXPECT_EQ(outcome_of({stranger, owner(0.0025)}).chosen, (std::vector<int>{0, -1}));
+  EXPECT_EQ(outcome_of({other_tool, owner(0.0024)}).chosen, (std::vector<int>{-1, 0}));
+  EXPECT_EQ(outcome_of({other_tool, owner(0.0025)}).chosen, (std::vector<int>{0, -1}));
   const auto more = labelings_of({labeling_of({0, 1, 2, 3, 4}, 0.004)});
   EXPECT_EQ(outcome_of({more, owner(0.001)}).chosen, (std::vector<int>{0, -1}));
 }
@@ -131,12 +131,13 @@ TEST(Assign, FindsTheRivalOfAsManyFreeMarkersThatPutsTheToolElsewhere) {
   owners.fill(-1);
   owners[0] = owners[1] = owners[2] = 0;
   int tests = 0;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 2);
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 2);
   EXPECT_LE(tests, k_labelings_max - 1);
   owners[3] = 1;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3) << "3 is another tool's";
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3)
+      << "3 is another tool's";
   owners[4] = 1;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), -1)
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), -1)
       << "0.05 rad is the same place, two markers are not as many";
 }
 
@@ -144,11 +145,11 @@ TEST(Assign, PrefersAsARivalTheOneThatWasForetold) {
   Labelings labelings =
       labelings_of({labeling_of({0, 1, 2}, 0.001), turned(labeling_of({1, 2, 0}, 0.002), 1),
                     turned(labeling_of({2, 0, 1}, 0.004), 2)});
-  labelings.items[2].predicted_worth_m2 = 1e-6;
+  labelings.items[2].log_prior_ratio_m2 = 1e-6;
   MarkerOwners owners;
   owners.fill(-1);
   int tests = 0;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 2);
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 2);
 }
 
 AssignWork work_of(const std::vector<Labelings>& per_tool) {
@@ -199,7 +200,7 @@ TEST(Assign, TakesAsManyToolsAsTheShortestSpanHas) {
   assign_markers(per_tool, chosen, reasons);
   EXPECT_EQ(chosen[0], 0);
   EXPECT_EQ(chosen[k_tools_max - 1], -1);
-  EXPECT_EQ(reasons[k_tools_max - 1], Reason::taken_by_other);
+  EXPECT_EQ(reasons[k_tools_max - 1], Reason::markers_assigned_elsewhere);
   EXPECT_EQ(chosen[k_tools_max], 7) << "more than there may be";
   for (const std::size_t size : {0U, 1U, 3U}) {
     std::fill(chosen.begin(), chosen.end(), 7);
@@ -225,20 +226,21 @@ TEST(Assign, ReadsNoMoreLabelingsThanAreKept) {
 
 // The sum of squares is over all markers: a small rms difference counts more with more markers.
 TEST(Assign, ComparesTheSumOfSquaresLessAPredictionsWorth) {
-  Labeling worthless = labeling_of({0, 1, 2, 3}, 0.002), worth = labeling_of({0, 1, 2, 3}, 0.003);
+  Labeling without_prior = labeling_of({0, 1, 2, 3}, 0.002),
+           with_prior = labeling_of({0, 1, 2, 3}, 0.003);
   // 4 x 4e-6 and 4 x 9e-6: a difference of 2e-5.
   for (const double worth_m2 : {1.9e-5, 2.1e-5}) {
-    worth.predicted_worth_m2 = worth_m2;
+    with_prior.log_prior_ratio_m2 = worth_m2;
     const bool second = worth_m2 > 2e-5;
-    EXPECT_EQ(outcome_of({labelings_of({worthless}), labelings_of({worth})}).chosen,
+    EXPECT_EQ(outcome_of({labelings_of({without_prior}), labelings_of({with_prior})}).chosen,
               second ? (std::vector<int>{-1, 0}) : (std::vector<int>{0, -1}));
-    EXPECT_EQ(outcome_of({labelings_of({worth}), labelings_of({worthless})}).chosen,
+    EXPECT_EQ(outcome_of({labelings_of({with_prior}), labelings_of({without_prior})}).chosen,
               second ? (std::vector<int>{0, -1}) : (std::vector<int>{-1, 0}));
   }
 }
 
-// rival_of() skips labelings with another number of markers, the chosen one and, once it has a
-// rival, those that were not predicted.
+// alternative_of() skips labelings with another number of markers, the chosen one and, once it has
+// a rival, those that were not predicted.
 TEST(Assign, CountsTheRivalsThatItLooksAt) {
   Labelings labelings = labelings_of(
       {labeling_of({0, 1, 2}, 0.001), labeling_of({0, 1}, 0.001),
@@ -247,19 +249,20 @@ TEST(Assign, CountsTheRivalsThatItLooksAt) {
   MarkerOwners owners;
   owners.fill(-1);
   int tests = 100;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3);
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3);
   EXPECT_EQ(tests, 100 + 2);
-  labelings.items[5].predicted_worth_m2 = 1e-6;
+  labelings.items[5].log_prior_ratio_m2 = 1e-6;
   tests = 0;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 5);
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 5);
   EXPECT_EQ(tests, 3);
-  labelings.items[3].predicted_worth_m2 = 1e-6;
+  labelings.items[3].log_prior_ratio_m2 = 1e-6;
   tests = 0;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3) << "foretold, and first";
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3)
+      << "foretold, and first";
   EXPECT_EQ(tests, 2);
-  EXPECT_EQ(rival_of(labelings, 5, 0, owners, Vector3::Zero(), tests), 3);
+  EXPECT_EQ(alternative_of(labelings, 5, 0, owners, Vector3::Zero(), tests), 3);
   labelings.count = 3;
-  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), -1);
+  EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), -1);
 }
 
 }  // namespace

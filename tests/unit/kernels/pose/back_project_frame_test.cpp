@@ -58,7 +58,7 @@ struct Scene {
     return marker;
   }
   // Removes the depth of all pixels within this distance.
-  void blind(const Vector2& middle, double within_px) {
+  void remove_depth(const Vector2& middle, double within_px) {
     for (int y = 0; y < k_side; ++y)
       for (int x = 0; x < k_side; ++x)
         if ((Vector2(x + 0.5, y + 0.5) - middle).norm() < within_px)
@@ -85,7 +85,7 @@ void expect_same(const Marker& a, const Marker& b) {
   EXPECT_EQ(a.flags, b.flags);
   EXPECT_EQ(a.sigma_px, b.sigma_px);
   EXPECT_EQ(a.range_sigma_m, b.range_sigma_m);
-  EXPECT_EQ(a.bias_taken_m, b.bias_taken_m);
+  EXPECT_EQ(a.bias_subtracted_m, b.bias_subtracted_m);
   EXPECT_EQ(a.peak, b.peak);
 }
 
@@ -112,8 +112,8 @@ TEST(BackProjectFrame, HasEachBlobsMarkerInOrderButThoseWithoutARay) {
   scene.add({30.2, 40.7}, 33).flags = k_blob_saturated;
   scene.add({1, 1}, 30);  // outside the lens's field
   scene.add({80.1, 90.3}, 41).flags = k_blob_has_neighbour;
-  scene.add({60.1, 20.3}, 29).flags = k_blob_uneven;
-  scene.blind({60.1, 20.3}, 9);
+  scene.add({60.1, 20.3}, 29).flags = k_blob_partial_or_merged;
+  scene.remove_depth({60.1, 20.3}, 9);
   scene.blobs->incomplete = Reason::runs_full;
   scene.project();
   EXPECT_EQ(scene.markers->incomplete, Reason::runs_full);
@@ -130,9 +130,9 @@ TEST(BackProjectFrame, HasEachBlobsMarkerInOrderButThoseWithoutARay) {
   const auto& items = scene.markers->items;
   EXPECT_EQ(items[0].flags, k_marker_saturated);
   EXPECT_EQ(items[1].flags, k_marker_has_neighbour);
-  EXPECT_EQ(items[2].flags, k_marker_uneven | k_marker_no_depth);
+  EXPECT_EQ(items[2].flags, k_marker_not_isolated | k_marker_no_depth);
   // 4 mm plus 1 mm times 1000 / counts: at 20000 counts a twentieth of it.
-  EXPECT_NEAR(items[0].bias_taken_m, 0.00405, 1e-9);
+  EXPECT_NEAR(items[0].bias_subtracted_m, 0.00405, 1e-9);
   EXPECT_NEAR(items[0].surface_range_m, k_range_m - 0.00405, 1e-9);
   EXPECT_EQ(items[0].peak, 20000);
   EXPECT_EQ(items[2].peak, 0) << "nothing was measured";
@@ -148,7 +148,7 @@ TEST(BackProjectFrame, CountsTheSumOfItsBlobsWork) {
   both.add({30.2, 40.7}, 35);  // expected size at its range
   both.add({80.1, 90.3}, 5);   // expected size one wrap distance behind it
   both.add({64.1, 20.3}, 37);
-  both.blind({64.1, 20.3}, 2.5);  // depth in the annulus only
+  both.remove_depth({64.1, 20.3}, 2.5);  // depth in the annulus only
   BackProjectWork sum;
   for (std::size_t i = 0; i < 3; ++i) {
     Scene one;
@@ -167,7 +167,7 @@ TEST(BackProjectFrame, CountsTheSumOfItsBlobsWork) {
   }
   expect_work(both.project(), sum);
   EXPECT_NE(both.markers->items[1].flags & k_marker_wrapped, 0);
-  EXPECT_NE(both.markers->items[2].flags & k_marker_ring_depth, 0);
+  EXPECT_NE(both.markers->items[2].flags & k_marker_annulus_depth, 0);
   // A blob without a ray is counted, and so are its lens steps.
   both.camera.field_tangent_max = 0.01;
   const BackProjectWork none = both.project();
@@ -216,20 +216,20 @@ TEST(BackProjectFrame, LooksAtNoMoreBlobsThanTheLimitAndHasNothingOfAFrameBefore
 // for samples and for pixels.
 TEST(BackProjectFrame, LeavesEachBlobItsShare) {
   for (const int count : {1, 4}) {
-    for (const bool blind : {false, true}) {
+    for (const bool without_depth : {false, true}) {
       Scene scene;
       scene.limits.blobs = 4;
-      scene.limits.range_samples_a_blob = 12;
-      scene.limits.range_pixels_a_blob = 90;
+      scene.limits.range_samples_per_blob = 12;
+      scene.limits.range_pixels_per_blob = 90;
       for (int i = 0; i < count; ++i) {
         const Vector2 middle{i == 0 ? 64.0 : 20.0 + 25 * i, i == 0 ? 64.0 : 20.0};
         scene.add(middle, 2000);
-        if (blind) scene.blind(middle, 5);  // so that the annulus is read
+        if (without_depth) scene.remove_depth(middle, 5);  // so that the annulus is read
       }
       const BackProjectWork work = scene.project();
       EXPECT_LE(work.pixels, 90 * 4);
       EXPECT_LE(work.samples, 12 * 4);
-      if (blind) continue;
+      if (without_depth) continue;
       EXPECT_EQ(work.samples, count == 1 ? pixels_within({64, 64}, 3.7) : 12 * 4);
       for (int i = 0; i < count; ++i) {
         const Marker& marker = scene.markers->items[static_cast<std::size_t>(i)];
@@ -244,8 +244,8 @@ TEST(BackProjectFrame, MaximumIsTheLimitsForEachBlob) {
   Limits limits;
   limits.blobs = 7;
   limits.ray_steps = 6;
-  limits.range_pixels_a_blob = 110;
-  limits.range_samples_a_blob = 13;
+  limits.range_pixels_per_blob = 110;
+  limits.range_samples_per_blob = 13;
   expect_work(back_project_work_max(limits), {7, 42, 770, 91, 91});
 }
 
@@ -269,14 +269,14 @@ TEST(BackProjectFrame, StatesTheMeansErrorByNumberSpreadAndBias) {
       const int inner = pixels_within(middle, std::max(0.7 * radius, 0.72));
       EXPECT_NEAR(scene.measured(0).range_sigma_m, sigma(inner, 0.007, 0.0001), 1e-8) << area;
       // From the annulus the sigma is larger, and larger still if the blob is saturated.
-      scene.blind(middle, std::max(0.7 * radius, 0.72));
+      scene.remove_depth(middle, std::max(0.7 * radius, 0.72));
       const int ring =
           pixels_within(middle, radius + 0.5) - pixels_within(middle, std::max(0.7 * radius, 0.72));
       if (ring == 0) continue;
       EXPECT_NEAR(scene.measured(0).range_sigma_m, sigma(ring, 0.007, saturated ? 0.0035 : 0.001),
                   1e-8)
           << area;
-      EXPECT_NE(scene.measured(0).flags & k_marker_ring_depth, 0);
+      EXPECT_NE(scene.measured(0).flags & k_marker_annulus_depth, 0);
     }
   }
 }
@@ -294,7 +294,7 @@ TEST(BackProjectFrame, TakesTheRingWhereLessThanAQuarterOfTheInnerPixelsHasDepth
       for (int x = 0; x < k_side; ++x)
         if ((Vector2(x + 0.5, y + 0.5) - middle).norm() < inner && kept++ >= left)
           scene.depth[static_cast<std::size_t>(k_side * y + x)] = 0;
-    EXPECT_EQ((scene.measured(0).flags & k_marker_ring_depth) != 0, left < 0.25 * all) << left;
+    EXPECT_EQ((scene.measured(0).flags & k_marker_annulus_depth) != 0, left < 0.25 * all) << left;
   }
 }
 
@@ -306,11 +306,11 @@ TEST(BackProjectFrame, WidensABlobThatIsLargerThanAMarkerByItsRadius) {
     Scene scene;
     scene.add({64, 64}, static_cast<unsigned>(limit) + (larger ? 1 : 0));
     const Marker marker = scene.measured(0);
-    EXPECT_EQ((marker.flags & k_marker_uneven) != 0, larger);
+    EXPECT_EQ((marker.flags & k_marker_not_isolated) != 0, larger);
     EXPECT_NEAR(marker.sigma_px[0], 0.02 + (larger ? radius_px : 0), 1e-3);
     EXPECT_NEAR(marker.sigma_px[1], 0.03 + (larger ? radius_px : 0), 1e-3);
     scene.nominal.radius_m = 0;
-    EXPECT_EQ(scene.measured(0).flags & k_marker_uneven, 0) << "nothing is expected";
+    EXPECT_EQ(scene.measured(0).flags & k_marker_not_isolated, 0) << "nothing is expected";
   }
 }
 

@@ -76,7 +76,7 @@ struct Scene {
     return static_cast<std::uint16_t>(std::lround(range / camera.depth.unit_m));
   }
 
-  [[nodiscard]] double front_m() const {
+  [[nodiscard]] double nearest_surface_m() const {
     return centre_m.norm() - (shape == MarkerShape::sphere ? radius_m : 0);
   }
 };
@@ -99,7 +99,7 @@ Marker marker_of(const Scene& scene, const FrameBuffer& buffer, const NominalMar
   EXPECT_EQ(blobs.count, 1);
   Marker marker;
   EXPECT_TRUE(measure_marker(frame, blobs.items[0], 7, scene.camera.model,
-                             sphere_shift(scene.camera.model), scene.camera.depth, nominal,
+                             sphere_offset(scene.camera.model), scene.camera.depth, nominal,
                              marker));
   EXPECT_EQ(marker.blob, 7);
   return marker;
@@ -112,14 +112,14 @@ TEST(BackProject, FindsASpheresFrontPoint) {
       scene.centre_m = Vector3{side * z, -0.1 * z, z} / std::hypot(1, side);
       const Marker marker = marker_of(scene, scene.render());
       EXPECT_EQ(marker.flags, 0);
-      EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.0005) << z << " " << side;
+      EXPECT_NEAR(marker.surface_range_m, scene.nearest_surface_m(), 0.0005) << z << " " << side;
       const Vector3 centre = marker.ray * (marker.surface_range_m + scene.radius_m);
       EXPECT_LT((centre - scene.centre_m).norm(), 0.001) << z << " " << side;
     }
   }
 }
 
-void blind(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate);
+void remove_depth(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate);
 
 // Near, 40 degrees off the axis of a pinhole: the image centroid is 0.14 px too far from the axis.
 TEST(BackProject, MovesASpheresCentroidToWhereItsCentreProjects) {
@@ -167,7 +167,7 @@ TEST(BackProject, StatesHowFarItsRangesMeanMayBeOff) {
       scene.noise_m = noise_m;
       scene.centre_m = {0.05 + 0.0013 * i, -0.03 + 0.0007 * i, 0.4};
       const Marker marker = marker_of(scene, scene.render());
-      squares += std::pow(marker.surface_range_m - scene.front_m(), 2);
+      squares += std::pow(marker.surface_range_m - scene.nearest_surface_m(), 2);
       variances += std::pow(marker.range_sigma_m, 2);
       EXPECT_GT(marker.sigma_px[0], 0);
       EXPECT_LT(marker.sigma_px[0], 0.05);
@@ -189,7 +189,7 @@ TEST(BackProject, StatesAWiderSigmaForTheRing) {
   scene.centre_m = {0.05, -0.03, 0.3};
   FrameBuffer buffer = scene.render();
   const float inner = marker_of(scene, buffer).range_sigma_m;
-  blind(scene, buffer, 3.6, false);
+  remove_depth(scene, buffer, 3.6, false);
   const float ring = marker_of(scene, buffer).range_sigma_m;
   EXPECT_GT(ring, 0.001F);
   EXPECT_GT(ring, 1.2F * inner);
@@ -199,8 +199,8 @@ TEST(BackProject, SaysThatABlobIsLargerThanOneMarker) {
   const Scene scene;
   const FrameBuffer buffer = scene.render();
   const Marker one = marker_of(scene, buffer), many = marker_of(scene, buffer, {0.003});
-  EXPECT_EQ(one.flags & k_marker_uneven, 0);
-  EXPECT_NE(many.flags & k_marker_uneven, 0);
+  EXPECT_EQ(one.flags & k_marker_not_isolated, 0);
+  EXPECT_NE(many.flags & k_marker_not_isolated, 0);
   EXPECT_GT(many.sigma_px[0], one.sigma_px[0] + 1);
 }
 
@@ -208,7 +208,7 @@ TEST(BackProject, FindsADiscsMiddle) {
   Scene scene;
   scene.shape = MarkerShape::disc;
   const Marker marker = marker_of(scene, scene.render(), {0.006, MarkerShape::disc});
-  EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.0005);
+  EXPECT_NEAR(marker.surface_range_m, scene.nearest_surface_m(), 0.0005);
   EXPECT_LT((marker.ray * marker.surface_range_m - scene.centre_m).norm(), 0.0005);
 }
 
@@ -217,18 +217,18 @@ TEST(BackProject, TurnsZDepthIntoRadialDepth) {
   scene.centre_m = {0.25, 0.1, 0.4};
   scene.camera.depth.kind = DepthKind::z;
   scene.camera.depth.wrap_range_m = 0;
-  EXPECT_NEAR(marker_of(scene, scene.render()).surface_range_m, scene.front_m(), 0.0007);
+  EXPECT_NEAR(marker_of(scene, scene.render()).surface_range_m, scene.nearest_surface_m(), 0.0007);
 }
 
 TEST(BackProject, AveragesTheNoiseOfItsPixels) {
   Scene scene;
   scene.noise_m = 0.005;
   scene.centre_m = {0.05, -0.03, 0.3};
-  EXPECT_NEAR(marker_of(scene, scene.render()).surface_range_m, scene.front_m(), 0.003);
+  EXPECT_NEAR(marker_of(scene, scene.render()).surface_range_m, scene.nearest_surface_m(), 0.003);
 }
 
 // Invalidates the depth of pixels within this distance of the marker's centre.
-void blind(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate) {
+void remove_depth(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate) {
   const Vector2 middle = project(scene.camera.model, scene.centre_m).value;
   for (int y = 0; y < buffer.height; ++y) {
     for (int x = 0; x < buffer.width; ++x) {
@@ -249,21 +249,21 @@ TEST(BackProject, TakesTheRingWhereTheCentreHasNoDepth) {
     Scene scene;
     scene.centre_m = {0.05, -0.03, 0.3};  // radius 5 px
     FrameBuffer buffer = scene.render();
-    blind(scene, buffer, 3.6, saturate);
+    remove_depth(scene, buffer, 3.6, saturate);
     const Marker marker = marker_of(scene, buffer);
-    EXPECT_EQ(marker.flags & k_marker_ring_depth, k_marker_ring_depth);
+    EXPECT_EQ(marker.flags & k_marker_annulus_depth, k_marker_annulus_depth);
     EXPECT_EQ((marker.flags & k_marker_saturated) != 0, saturate);
-    EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.001);
+    EXPECT_NEAR(marker.surface_range_m, scene.nearest_surface_m(), 0.001);
   }
 }
 
 TEST(BackProject, SaysSoWhereThereIsNoDepthAtAll) {
   Scene scene;
   FrameBuffer buffer = scene.render();
-  blind(scene, buffer, 9, false);
-  const Marker blinded = marker_of(scene, buffer);
-  EXPECT_EQ(blinded.flags, k_marker_no_depth);
-  EXPECT_EQ(blinded.surface_range_m, 0);
+  remove_depth(scene, buffer, 9, false);
+  const Marker without_depth = marker_of(scene, buffer);
+  EXPECT_EQ(without_depth.flags, k_marker_no_depth);
+  EXPECT_EQ(without_depth.surface_range_m, 0);
   for (auto& value : buffer.depth) value = 4090;  // invalid from this value on
   EXPECT_EQ(marker_of(scene, buffer).flags, k_marker_no_depth);
   buffer.depth.clear();
@@ -278,7 +278,7 @@ TEST(BackProject, IsNotPulledByMixedPixels) {
   const int x = static_cast<int>(middle.x()), y = static_cast<int>(middle.y());
   buffer.depth[static_cast<std::size_t>(y * 512 + x)] = 700;
   buffer.depth[static_cast<std::size_t>((y + 1) * 512 + x)] = 650;
-  EXPECT_NEAR(marker_of(scene, buffer).surface_range_m, scene.front_m(), 0.0007);
+  EXPECT_NEAR(marker_of(scene, buffer).surface_range_m, scene.nearest_surface_m(), 0.0007);
 }
 
 TEST(BackProject, FindsAndFlagsAWrappedRange) {
@@ -287,7 +287,7 @@ TEST(BackProject, FindsAndFlagsAWrappedRange) {
     scene.centre_m = {0.1, 0.05, z};
     const Marker marker = marker_of(scene, scene.render());
     EXPECT_EQ(marker.flags, k_marker_wrapped) << z;
-    EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.0015) << z;
+    EXPECT_NEAR(marker.surface_range_m, scene.nearest_surface_m(), 0.0015) << z;
   }
   for (const double z : {0.15, 0.5, 0.9, 1.0}) {
     Scene scene;

@@ -108,7 +108,7 @@ TEST(TurnBetween, CarriesADirectionByTheLeastTurn) {
     const double angle = trial < 100 ? random.within(0, 3.14) : std::numbers::pi - 1e-9 * trial;
     const Vector3 axis = from.unitOrthogonal();
     const Vector3 to = 3 * (from_rotation_vector(angle * axis) * from);
-    const Quaternion turn = turn_between(from, to);
+    const Quaternion turn = rotation_between(from, to);
     EXPECT_LT((turn * from.normalized() - to.normalized()).norm(), 3e-7) << angle;
     EXPECT_NEAR(turn.norm(), 1, 1e-15);
     EXPECT_NEAR(rotation_vector(turn).norm(), angle, 3e-7);

@@ -18,8 +18,8 @@ const Pose k_truth{from_rotation_vector({0.3, -0.7, 0.2}), {0.05, -0.1, 0.5}};
 BiasCorrection correction(CorrectionFrame frame) {
   BiasCorrection out;
   out.frame = frame;
-  out.shift_m = {0.001, -0.002, 0.003};
-  out.turn_rad = {0.01, 0.02, -0.005};
+  out.translation_m = {0.001, -0.002, 0.003};
+  out.rotation_rad = {0.01, 0.02, -0.005};
   out.range_m = {0.4, 0.6};
   out.off_axis_cosine = {0.9, 1.0};
   out.tilt_cosine = {-1, 1};
@@ -28,7 +28,7 @@ BiasCorrection correction(CorrectionFrame frame) {
 
 TEST(BiasCorrection, TakesOffAnErrorAlongTheToolsAxes) {
   const BiasCorrection known = correction(CorrectionFrame::tool);
-  const Pose error{from_rotation_vector(known.turn_rad), known.shift_m};
+  const Pose error{from_rotation_vector(known.rotation_rad), known.translation_m};
   const CorrectedPose out = correct_bias(known, k_truth * error.inverse());
   EXPECT_EQ(out.reason, Reason::none);
   EXPECT_LT((out.T_camera_tool.translation - k_truth.translation).norm(), 1e-15);
@@ -37,8 +37,8 @@ TEST(BiasCorrection, TakesOffAnErrorAlongTheToolsAxes) {
 
 TEST(BiasCorrection, TakesOffAnErrorAlongTheCamerasAxes) {
   const BiasCorrection known = correction(CorrectionFrame::camera);
-  const Pose off{from_rotation_vector(-known.turn_rad) * k_truth.rotation,
-                 k_truth.translation - known.shift_m};
+  const Pose off{from_rotation_vector(-known.rotation_rad) * k_truth.rotation,
+                 k_truth.translation - known.translation_m};
   const CorrectedPose out = correct_bias(known, off);
   EXPECT_EQ(out.reason, Reason::none);
   EXPECT_LT((out.T_camera_tool.translation - k_truth.translation).norm(), 1e-15);
@@ -74,7 +74,7 @@ TEST(BiasCorrection, LeavesAloneWhereThereIsNoneAndWhatIsNoPose) {
 }
 
 TEST(BiasCorrection, HoldsAtBothEndsOfEachRangeAndNotBeyond) {
-  const SeenFrom seen = seen_from(k_truth);
+  const ViewGeometry seen = view_geometry(k_truth);
   const auto reason = [&](const BiasCorrection& known) {
     return correct_bias(known, k_truth).reason;
   };
@@ -96,12 +96,12 @@ TEST(BiasCorrection, HoldsAtBothEndsOfEachRangeAndNotBeyond) {
 
 // A rotated tool beside the axis: range, angle off the axis and tilt against their angles.
 TEST(BiasCorrection, SeesTheRangeTheAngleOffTheAxisAndTheTilt) {
-  const SeenFrom seen = seen_from(
+  const ViewGeometry seen = view_geometry(
       {from_rotation_vector({0.7, 0, 0}), Vector3(0, -std::sin(0.3), std::cos(0.3)) * 0.8});
   EXPECT_NEAR(seen.range_m, 0.8, 1e-15);
   EXPECT_NEAR(seen.off_axis_cosine, std::cos(0.3), 1e-15);
   EXPECT_NEAR(seen.tilt_cosine, std::cos(0.7 - 0.3), 1e-15) << "z turns to -y, as the sight does";
-  const SeenFrom nowhere = seen_from({});
+  const ViewGeometry nowhere = view_geometry({});
   EXPECT_EQ(nowhere.range_m, 0);
   EXPECT_EQ(nowhere.off_axis_cosine, 1);
   EXPECT_EQ(nowhere.tilt_cosine, 1);
@@ -113,7 +113,7 @@ TEST(BiasCorrection, GivesTheSameBitsEverywhere) {
   for (int trial = 0; trial < 1000; ++trial) {
     for (const auto frame : {CorrectionFrame::tool, CorrectionFrame::camera}) {
       BiasCorrection known = correction(frame);
-      known.turn_rad *= random.within(0, 3);
+      known.rotation_rad *= random.within(0, 3);
       const Pose out = correct_bias(known, k_truth).T_camera_tool;
       for (int i = 0; i < 4; ++i) hash.add(out.rotation.coeffs()[i]);
       for (int i = 0; i < 3; ++i) hash.add(out.translation[i]);

@@ -51,36 +51,37 @@ Tool tool_of_radius(double radius_px, MarkerShape shape = MarkerShape::sphere) {
   return tool;
 }
 
-double strip_of(std::uint32_t area_px, const Tool& tool, std::uint8_t flags = 0) {
+double rim_offset_of(std::uint32_t area_px, const Tool& tool, std::uint8_t flags = 0) {
   Marker marker;
   marker.area_px = area_px;
   marker.flags = flags;
   const LocalRays rays{Vector2::Zero(), Vector3::UnitZ(), Vector3::UnitX() / k_focal_px,
                        Vector3::UnitY() / k_focal_px};
-  return strip_px(marker, rays, tool, k_range_m);
+  return rim_offset_px(marker, rays, tool, k_range_m);
 }
 
 // Variance of one axis that the blob's size adds.
-double added(double own_strip_px) {
+double added_variance_px2(double own_rim_offset_px) {
   MarkerVariance variance{0, 0, 0, 1};
-  widen(variance, own_strip_px);
+  inflate(variance, own_rim_offset_px);
   return variance.xx_px2;
 }
 
-Vector2 somewhere(Random& random) {
+Vector2 random_centre(Random& random) {
   const double x = random.within(0, 1), y = random.within(0, 1);
   return Vector2(32 + x, 32 + y);
 }
 
 TEST(BlobSize, SaysHardlyEverAnythingOfADiscOfItsOwn) {
   Random random(1);
-  int blamed = 0;
+  int flagged = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const double radius_px = random.within(1.5, 6);
-    const Drawn drawn = draw({{somewhere(random), radius_px + k_rim_px}});
-    blamed += added(strip_of(drawn.area_px, tool_of_radius(radius_px))) > 0 ? 1 : 0;
+    const Drawn drawn = draw({{random_centre(random), radius_px + k_rim_px}});
+    flagged +=
+        added_variance_px2(rim_offset_of(drawn.area_px, tool_of_radius(radius_px))) > 0 ? 1 : 0;
   }
-  EXPECT_LE(blamed, 4);
+  EXPECT_LE(flagged, 4);
 }
 
 struct Tally {
@@ -109,7 +110,7 @@ TEST(BlobSize, SaysHowFarADiscBesideMovesTheMiddle) {
   constexpr int k_trials = 3000;
   for (int trial = 0; trial < k_trials; ++trial) {
     const double radius_px = random.within(2, 5);
-    const Vector2 middle = somewhere(random);
+    const Vector2 middle = random_centre(random);
     const double angle = random.within(0, 6.28);
     const double apart_px = random.within(2, 1.5 * radius_px);
     const SineCosine turn = sine_cosine(angle);
@@ -117,7 +118,7 @@ TEST(BlobSize, SaysHowFarADiscBesideMovesTheMiddle) {
         draw({{middle, radius_px + k_rim_px},
               {middle + apart_px * Vector2(turn.cosine, turn.sine), radius_px + k_rim_px}});
     tally.add(0.5 * (drawn.middle_px - middle).squaredNorm(),
-              added(strip_of(drawn.area_px, tool_of_radius(radius_px))));
+              added_variance_px2(rim_offset_of(drawn.area_px, tool_of_radius(radius_px))));
   }
   tally.judge();
 }
@@ -128,11 +129,11 @@ TEST(BlobSize, SaysHowFarAHiddenPartMovesTheMiddle) {
   constexpr int k_trials = 3000;
   for (int trial = 0; trial < k_trials; ++trial) {
     const double radius_px = random.within(2.5, 5);
-    const Vector2 middle = somewhere(random);
+    const Vector2 middle = random_centre(random);
     const double kept_px = random.within(-0.5, 0.4) * radius_px;  // beyond the centre
     const Drawn drawn = draw({{middle, radius_px + k_rim_px}}, middle.x() + kept_px);
     tally.add(0.5 * (drawn.middle_px - middle).squaredNorm(),
-              added(strip_of(drawn.area_px, tool_of_radius(radius_px))));
+              added_variance_px2(rim_offset_of(drawn.area_px, tool_of_radius(radius_px))));
   }
   tally.judge();
 }
@@ -140,24 +141,24 @@ TEST(BlobSize, SaysHowFarAHiddenPartMovesTheMiddle) {
 TEST(BlobSize, AMergedBlobsRangeMayBeTheOthersAHiddenOnesIsItsOwn) {
   MarkerVariance merged, hidden;
   const double range_m2 = merged.range_m2;
-  widen(merged, 2);
-  widen(hidden, -2);
+  inflate(merged, 2);
+  inflate(hidden, -2);
   EXPECT_GT(merged.range_m2, 10 * range_m2);
   EXPECT_EQ(hidden.range_m2, range_m2);
 }
 
 TEST(BlobSize, BlamesNoMarkerForWhatAllHave) {
-  CommonStrip smeared;
-  for (const double strip : {1.6, 1.9, 3.9}) smeared.add(strip);
-  EXPECT_EQ(smeared.beyond(1.6), 0);
-  EXPECT_NEAR(smeared.beyond(1.9), 0.3, 1e-12);
-  EXPECT_NEAR(smeared.beyond(3.9), 2.3, 1e-12);
-  CommonStrip dim;
-  for (const double strip : {-1.6, -1.9, -3.9}) dim.add(strip);
-  EXPECT_EQ(dim.beyond(-1.6), 0);
-  EXPECT_NEAR(dim.beyond(-3.9), -2.3, 1e-12);
-  CommonStrip mixed;
-  for (const double strip : {-1.5, 0.1, 2.0}) mixed.add(strip);
+  CommonRimOffset blurred;
+  for (const double offset_px : {1.6, 1.9, 3.9}) blurred.add(offset_px);
+  EXPECT_EQ(blurred.beyond(1.6), 0);
+  EXPECT_NEAR(blurred.beyond(1.9), 0.3, 1e-12);
+  EXPECT_NEAR(blurred.beyond(3.9), 2.3, 1e-12);
+  CommonRimOffset low_signal;
+  for (const double offset_px : {-1.6, -1.9, -3.9}) low_signal.add(offset_px);
+  EXPECT_EQ(low_signal.beyond(-1.6), 0);
+  EXPECT_NEAR(low_signal.beyond(-3.9), -2.3, 1e-12);
+  CommonRimOffset mixed;
+  for (const double offset_px : {-1.5, 0.1, 2.0}) mixed.add(offset_px);
   EXPECT_EQ(mixed.beyond(-1.5), -1.5);
   EXPECT_EQ(mixed.beyond(2.0), 2.0);
 }
@@ -167,28 +168,28 @@ TEST(BlobSize, IsTheAreaBeyondTheDiscsAlongHalfItsRim) {
   constexpr double k_pi = std::numbers::pi;
   for (const double radius_px : {1.5, 3.0, 6.0}) {
     for (const std::uint32_t area_px : {5U, 30U, 130U, 400U}) {
-      const double strip =
+      const double offset_px =
           (area_px - k_pi * (radius_px + 0.3) * (radius_px + 0.3)) / (k_pi * radius_px);
-      EXPECT_NEAR(strip_of(area_px, tool_of_radius(radius_px)), strip, 1e-9);
-      EXPECT_NEAR(strip_of(area_px, tool_of_radius(radius_px, MarkerShape::disc)),
-                  std::max(strip, 0.0), 1e-9);
+      EXPECT_NEAR(rim_offset_of(area_px, tool_of_radius(radius_px)), offset_px, 1e-9);
+      EXPECT_NEAR(rim_offset_of(area_px, tool_of_radius(radius_px, MarkerShape::disc)),
+                  std::max(offset_px, 0.0), 1e-9);
     }
   }
 }
 
 TEST(BlobSize, WidensFromTheNoiseOnByWhatAStripMovesTheMiddle) {
-  const auto widened = [](double strip_px) {
+  const auto widened = [](double rim_offset_px) {
     MarkerVariance variance{0.01, 0.003, 0.02, 1e-6};
-    widen(variance, strip_px);
+    inflate(variance, rim_offset_px);
     return variance;
   };
-  for (const double strip : {0.0, 0.7, -0.7}) {
-    EXPECT_EQ(widened(strip).xx_px2, 0.01) << strip;
-    EXPECT_EQ(widened(strip).range_m2, 1e-6) << strip;
-    EXPECT_FALSE(is_merged(strip) || is_partly_hidden(strip));
+  for (const double offset_px : {0.0, 0.7, -0.7}) {
+    EXPECT_EQ(widened(offset_px).xx_px2, 0.01) << offset_px;
+    EXPECT_EQ(widened(offset_px).range_m2, 1e-6) << offset_px;
+    EXPECT_FALSE(is_merged(offset_px) || is_partially_occluded(offset_px));
   }
-  EXPECT_TRUE(is_merged(0.7001) && !is_partly_hidden(0.7001));
-  EXPECT_TRUE(is_partly_hidden(-0.7001) && !is_merged(-0.7001));
+  EXPECT_TRUE(is_merged(0.7001) && !is_partially_occluded(0.7001));
+  EXPECT_TRUE(is_partially_occluded(-0.7001) && !is_merged(-0.7001));
   const MarkerVariance merged = widened(2), hidden = widened(-2);
   const double by_merging = 0.5 * std::pow(2 * std::numbers::pi / 4, 2);
   EXPECT_NEAR(merged.xx_px2, 0.01 + by_merging, 1e-12);
@@ -201,16 +202,16 @@ TEST(BlobSize, WidensFromTheNoiseOnByWhatAStripMovesTheMiddle) {
 
 TEST(BlobSize, TellsNothingOfWhatIsNotSeenWhole) {
   const Tool sphere = tool_of_radius(3), disc = tool_of_radius(3, MarkerShape::disc);
-  EXPECT_GT(strip_of(60, sphere), 0);
-  EXPECT_LT(strip_of(10, sphere), -1);
-  EXPECT_GT(strip_of(60, disc), 0);
-  EXPECT_EQ(strip_of(10, disc), 0) << "it may be tilted";
-  EXPECT_EQ(strip_of(60, sphere, k_marker_touches_edge), 0);
-  EXPECT_EQ(strip_of(0, sphere), 0);
-  EXPECT_EQ(strip_of(60, tool_of_radius(0)), 0);
+  EXPECT_GT(rim_offset_of(60, sphere), 0);
+  EXPECT_LT(rim_offset_of(10, sphere), -1);
+  EXPECT_GT(rim_offset_of(60, disc), 0);
+  EXPECT_EQ(rim_offset_of(10, disc), 0) << "it may be tilted";
+  EXPECT_EQ(rim_offset_of(60, sphere, k_marker_touches_edge), 0);
+  EXPECT_EQ(rim_offset_of(0, sphere), 0);
+  EXPECT_EQ(rim_offset_of(60, tool_of_radius(0)), 0);
   Marker no_image;
   no_image.area_px = 60;
-  EXPECT_EQ(strip_px(no_image, {}, sphere, 0.5), 0);
+  EXPECT_EQ(rim_offset_px(no_image, {}, sphere, 0.5), 0);
 }
 
 }  // namespace

@@ -31,18 +31,19 @@ struct Errors {
 };
 
 // Measurements of a tool by a device with these errors.
-struct Seen {
+struct Measurements {
   std::vector<WeightedMarker> markers;
   std::vector<LocalRays> rays;
   std::vector<int> of_tool;
 
-  Seen(const Tool& tool, const Pose& pose, const Errors& errors, double noise, Random& random) {
+  Measurements(const Tool& tool, const Pose& pose, const Errors& errors, double noise,
+               Random& random) {
     const CameraModel camera = test::pinhole();
     for (int i = 0; i < tool.marker_count; ++i) {
       const auto m = static_cast<std::size_t>(i);
-      const Vector3 made =
+      const Vector3 true_marker_m =
           tool.markers_m[m] + k_marker_sigma_m * errors.sigmas.segment<3>(k_common_errors + 3 * i);
-      const Vector3 point = pose * made;
+      const Vector3 point = pose * true_marker_m;
       Vector2 pixel = project(camera, point).value;
       double range_m = point.norm();
       errors.apply(camera, pixel, range_m);
@@ -50,7 +51,7 @@ struct Seen {
       range_m += noise * 0.0015 * random.normal();
       int steps = 0;
       rays.push_back(local_rays(camera, pixel, k_ray_steps_max, steps).value);
-      markers.push_back(weigh_marker(tool.markers_m[m], rays.back(), range_m, k_variance).value);
+      markers.push_back(whiten_marker(tool.markers_m[m], rays.back(), range_m, k_variance).value);
       of_tool.push_back(i);
     }
   }
@@ -70,7 +71,7 @@ CalibrationErrors seen_by(const Tool& tool, const Errors& errors, int fits, Rand
   CalibrationErrors sums;
   for (int n = 0; n < fits; ++n) {
     const Pose pose = held_pose(tool, random);
-    EXPECT_TRUE(Seen(tool, pose, errors, 1, random).add_to(&sums, pose));
+    EXPECT_TRUE(Measurements(tool, pose, errors, 1, random).add_to(&sums, pose));
   }
   return sums;
 }
@@ -94,7 +95,7 @@ TEST(CalibrationErrors, LieWithinTheirCovariance) {
     const CalibrationErrors sums = seen_by(tool, errors, 30, random);
     EXPECT_EQ(sums.fits, 30);
     const ErrorMatrix covariance = covariance_of(sums);
-    const ErrorVector off = covariance * sums.pull - errors.sigmas;
+    const ErrorVector off = covariance * sums.information_vector - errors.sigmas;
     squares += off.dot(covariance.llt().solve(off)) / (k_common_errors + 3 * tool.marker_count);
   }
   // These measurements lack the correlated and uncalibrated errors that inflate the stated noise,
@@ -111,11 +112,11 @@ TEST(CalibrationErrors, FindARangeOffsetAndAMarkerOutOfPlace) {
   offset.sigmas(0) = 4;
   marker.sigmas.segment<3>(k_common_errors + 6) = Vector3(4, 0, -4);
   const CalibrationErrors of_offset = seen_by(tool, offset, 60, random);
-  const ErrorVector found = covariance_of(of_offset) * of_offset.pull;
+  const ErrorVector found = covariance_of(of_offset) * of_offset.information_vector;
   EXPECT_GT(found(0), 2.5);
   EXPECT_LT(found.tail(k_calibration_errors - k_common_errors).cwiseAbs().maxCoeff(), 1.5);
   const CalibrationErrors of_marker = seen_by(tool, marker, 60, random);
-  const ErrorVector moved = covariance_of(of_marker) * of_marker.pull;
+  const ErrorVector moved = covariance_of(of_marker) * of_marker.information_vector;
   EXPECT_LT(std::abs(moved(0)), 1);
   // A translation of the whole tool is part of the pose, and its scale may be the focal length's.
   // Only the shape is observable.
@@ -167,14 +168,14 @@ TEST(CalibrationErrors, AddNothingOfAFitThatIsNotDetermined) {
   int steps = 0;
   const LocalRays rays = local_rays(test::pinhole(), {200, 200}, k_ray_steps_max, steps).value;
   const Vector3 point = rays.ray * 0.5;
-  const WeightedMarker one = weigh_marker(Vector3::Zero(), rays, 0.5, k_variance).value;
+  const WeightedMarker one = whiten_marker(Vector3::Zero(), rays, 0.5, k_variance).value;
   const Pose pose{Quaternion::Identity(), point};
   EXPECT_EQ(add_fit(std::vector(3, one), std::vector(3, rays), std::vector{0, 1, 2}, pose, k_stated,
                     k_marker_sigma_m, &sums)
                 .reason,
             Reason::degenerate);
   EXPECT_EQ(sums.fits, 0);
-  EXPECT_TRUE(sums.pull.isZero());
+  EXPECT_TRUE(sums.information_vector.isZero());
 }
 
 // Two swapped markers: no declared error explains the residuals, even eight times as large.
@@ -185,7 +186,7 @@ TEST(CalibrationErrors, AddNothingOfAWrongLabeling) {
   int refused = 0;
   for (int n = 0; n < 20; ++n) {
     const Pose pose = held_pose(tool, random);
-    Seen seen(tool, pose, {}, 1, random);
+    Measurements seen(tool, pose, {}, 1, random);
     std::swap(seen.markers[0].model_m, seen.markers[1].model_m);
     refused += seen.add_to(&sums, pose).reason == Reason::bad_fit ? 1 : 0;
   }
@@ -201,13 +202,13 @@ TEST(CalibrationErrors, GiveTheOptimumAndWhatMovesIt) {
     const Pose pose = held_pose(tool, random);
     Pose beside = pose;
     beside.translation += Vector3(0.0005, -0.0003, 0.0004);
-    const OptimalFit exact = Seen(tool, pose, {}, 0, random).add_to(nullptr, beside).value;
+    const OptimalFit exact = Measurements(tool, pose, {}, 0, random).add_to(nullptr, beside).value;
     EXPECT_LT((exact.T_camera_tool.translation - pose.translation).norm(), 2e-5);
     EXPECT_LT(exact.T_camera_tool.rotation.angularDistance(pose.rotation), 2e-4);
     for (int error = 0; error < k_common_errors; ++error) {
       Errors one;
       one.sigmas(error) = 0.1;
-      const OptimalFit moved = Seen(tool, pose, one, 0, random).add_to(nullptr, pose).value;
+      const OptimalFit moved = Measurements(tool, pose, one, 0, random).add_to(nullptr, pose).value;
       Vector6 by;
       by << moved.T_camera_tool.translation - pose.translation,
           rotation_vector(moved.T_camera_tool.rotation * pose.rotation.conjugate());

@@ -23,12 +23,12 @@ constexpr CameraUncertainty k_stated{0.005, 0.02, 2, 0.004, 0.0009, 0.06, 0.6, 0
 constexpr double k_marker_sigma_m = 0.0004;
 
 // A tool with noise on every measurement; its markers are in reversed order.
-struct Seen {
+struct Measurements {
   std::vector<WeightedMarker> markers;
   std::vector<LocalRays> rays;
   std::vector<int> of_tool;
 
-  Seen(const Tool& tool, const Pose& pose, Random& random) {
+  Measurements(const Tool& tool, const Pose& pose, Random& random) {
     const CameraModel camera = test::pinhole();
     for (int i = tool.marker_count - 1; i >= 0; --i) {
       const Vector3& model = tool.markers_m[static_cast<std::size_t>(i)];
@@ -36,7 +36,7 @@ struct Seen {
       int steps = 0;
       rays.push_back(local_rays(camera, pixel, k_ray_steps_max, steps).value);
       const double range_m = (pose * model).norm() + 0.0015 * random.normal();
-      markers.push_back(weigh_marker(model, rays.back(), range_m, k_variance).value);
+      markers.push_back(whiten_marker(model, rays.back(), range_m, k_variance).value);
       of_tool.push_back(i);
     }
   }
@@ -47,7 +47,7 @@ struct Seen {
 
 // The three residuals of marker i with its model position displaced by `moved` and its pixel by
 // `pixel`.
-Vector3 residuals(const Seen& seen, std::size_t i, const Pose& pose, const Vector3& moved,
+Vector3 residuals(const Measurements& seen, std::size_t i, const Pose& pose, const Vector3& moved,
                   const Vector2& pixel, double range_off_m) {
   const WeightedMarker& marker = seen.markers[i];
   const LocalRays& rays = seen.rays[i];
@@ -80,18 +80,18 @@ Pose nudged(const Pose& pose, const Vector3& mean_m, int parameter, double by) {
   return out;
 }
 
-struct Whole {
+struct FullMatrices {
   Column f;
   Poses j;
   Errors c;  // minus the derivatives by the errors, per declared sigma
 };
 
 // Numerical derivatives of the residuals.
-Whole whole_of(const Seen& seen, const Pose& pose) {
+FullMatrices full_matrices_of(const Measurements& seen, const Pose& pose) {
   const auto n = static_cast<Eigen::Index>(seen.markers.size());
   const Vector3 mean_m = mean_of(seen.markers), none = Vector3::Zero();
   const Vector2 still = Vector2::Zero(), principal(256, 256);
-  Whole out{Column(3 * n), Poses(3 * n, 6), Errors::Zero(3 * n, k_calibration_errors)};
+  FullMatrices out{Column(3 * n), Poses(3 * n, 6), Errors::Zero(3 * n, k_calibration_errors)};
   constexpr double k_h = 1e-6;
   for (Eigen::Index row = 0; row < n; ++row) {
     const auto i = static_cast<std::size_t>(row);
@@ -138,12 +138,12 @@ TEST(CalibrationSums, AreThoseOfTheWholeMatricesWithoutThePosesPart) {
     double ranges_m = 0;
     for (int fit = 0; fit < 2; ++fit) {
       const Pose pose = held_pose(tool, random);
-      const Seen seen(tool, pose, random);
+      const Measurements seen(tool, pose, random);
       ASSERT_TRUE(seen.add_to(&sums, pose));
-      const Whole whole = whole_of(seen, pose);
-      const Matrix6 normal = whole.j.transpose() * whole.j;
-      const Column left = whole.f - whole.j * normal.llt().solve(whole.j.transpose() * whole.f);
-      const Errors kept = whole.c - whole.j * normal.llt().solve(whole.j.transpose() * whole.c);
+      const FullMatrices full = full_matrices_of(seen, pose);
+      const Matrix6 normal = full.j.transpose() * full.j;
+      const Column left = full.f - full.j * normal.llt().solve(full.j.transpose() * full.f);
+      const Errors kept = full.c - full.j * normal.llt().solve(full.j.transpose() * full.c);
       information += kept.transpose() * kept;
       pull -= kept.transpose() * left;
       for (const WeightedMarker& marker : seen.markers)
@@ -153,7 +153,8 @@ TEST(CalibrationSums, AreThoseOfTheWholeMatricesWithoutThePosesPart) {
     EXPECT_NEAR(sums.ranges_m, ranges_m, 1e-12);
     const double scale = information.norm();
     for (int c = 0; c < k_calibration_errors; ++c) {
-      EXPECT_NEAR(sums.pull(c), pull(c), 1e-6 * (1 + pull.norm())) << trial << " " << c;
+      EXPECT_NEAR(sums.information_vector(c), pull(c), 1e-6 * (1 + pull.norm()))
+          << trial << " " << c;
       for (int r = c; r < k_calibration_errors; ++r)
         EXPECT_NEAR(sums.information(r, c), information(r, c), 1e-6 * scale) << r << " " << c;
     }
@@ -165,12 +166,12 @@ TEST(CalibrationSums, GiveTheStepToTheOptimumItsCovarianceAndWhatMovesIt) {
   for (int trial = 0; trial < 10; ++trial) {
     const Tool tool = test::random_tool(random, 3 + trial % 6);
     const Pose pose = held_pose(tool, random);
-    const Seen seen(tool, pose, random);
+    const Measurements seen(tool, pose, random);
     const Result<OptimalFit> fit = seen.add_to(nullptr, pose);
     ASSERT_TRUE(fit);
-    const Whole whole = whole_of(seen, pose);
-    const Matrix6 inverse = Matrix6(whole.j.transpose() * whole.j).inverse();
-    const Vector6 step = -inverse * (whole.j.transpose() * whole.f);
+    const FullMatrices full = full_matrices_of(seen, pose);
+    const Matrix6 inverse = Matrix6(full.j.transpose() * full.j).inverse();
+    const Vector6 step = -inverse * (full.j.transpose() * full.f);
     const Vector3 mean_m = mean_of(seen.markers);
     const Quaternion turned = from_rotation_vector(step.tail<3>()) * pose.rotation;
     const Pose& found = fit.value.T_camera_tool;
@@ -180,7 +181,7 @@ TEST(CalibrationSums, GiveTheStepToTheOptimumItsCovarianceAndWhatMovesIt) {
     const Matrix6 covariance = to_origin * inverse * to_origin.transpose();
     EXPECT_LT((fit.value.covariance - covariance).norm(), 1e-5 * covariance.norm());
     const Eigen::Matrix<double, 6, k_common_errors> by_errors =
-        to_origin * inverse * (whole.j.transpose() * whole.c.leftCols<k_common_errors>());
+        to_origin * inverse * (full.j.transpose() * full.c.leftCols<k_common_errors>());
     EXPECT_LT((fit.value.by_errors - by_errors).norm(), 1e-5 * by_errors.norm());
   }
 }
@@ -189,11 +190,13 @@ TEST(CalibrationSums, NeedThreeMarkersEachInFrontWithItsRayAndItsPlaceInTheTool)
   Random random(3);
   const Tool tool = test::random_tool(random, 4);
   const Pose pose = held_pose(tool, random);
-  const Seen seen(tool, pose, random);
+  const Measurements seen(tool, pose, random);
   CalibrationErrors sums;
-  const auto reason = [&](const Seen& of, const Pose& at) { return of.add_to(&sums, at).reason; };
+  const auto reason = [&](const Measurements& of, const Pose& at) {
+    return of.add_to(&sums, at).reason;
+  };
   EXPECT_EQ(reason(seen, pose), Reason::none);
-  Seen three = seen;
+  Measurements three = seen;
   three.markers.resize(3);
   EXPECT_EQ(reason(three, pose), Reason::none) << "more rays than markers do no harm";
   three.rays.resize(3);
@@ -201,17 +204,17 @@ TEST(CalibrationSums, NeedThreeMarkersEachInFrontWithItsRayAndItsPlaceInTheTool)
   EXPECT_EQ(reason(three, pose), Reason::none);
   EXPECT_EQ(sums.fits, 3);
   const auto expect_none = [&](auto&& spoil) {
-    Seen spoiled = seen;
+    Measurements spoiled = seen;
     spoil(spoiled);
     EXPECT_EQ(reason(spoiled, pose), Reason::degenerate);
   };
-  expect_none([](Seen& s) { s.markers.resize(2); });
-  expect_none([](Seen& s) { s.rays.resize(3); });
-  expect_none([](Seen& s) { s.of_tool.resize(3); });
-  expect_none([](Seen& s) { s.of_tool[1] = -1; });
-  expect_none([](Seen& s) { s.of_tool[3] = k_markers_per_tool_max; });
+  expect_none([](Measurements& s) { s.markers.resize(2); });
+  expect_none([](Measurements& s) { s.rays.resize(3); });
+  expect_none([](Measurements& s) { s.of_tool.resize(3); });
+  expect_none([](Measurements& s) { s.of_tool[1] = -1; });
+  expect_none([](Measurements& s) { s.of_tool[3] = k_markers_per_tool_max; });
   EXPECT_EQ(reason(seen, {pose.rotation, pose.translation - Vector3(0, 0, 2)}), Reason::degenerate);
-  Seen last = seen;
+  Measurements last = seen;
   last.of_tool[3] = k_markers_per_tool_max - 1;
   EXPECT_EQ(reason(last, pose), Reason::none);
   EXPECT_EQ(sums.fits, 4) << "nothing was added of the others";
@@ -222,15 +225,15 @@ TEST(CalibrationSums, TakeNoMoreMarkersThanAToolHas) {
   Random random(4);
   const Tool tool = test::random_tool(random, k_markers_per_tool_max);
   const Pose pose = held_pose(tool, random);
-  const Seen seen(tool, pose, random);
-  Seen more = seen;
+  const Measurements seen(tool, pose, random);
+  Measurements more = seen;
   more.markers.push_back(seen.markers[0]);
   more.rays.push_back(seen.rays[0]);
   more.of_tool.push_back(-1);
   CalibrationErrors a, b;
   ASSERT_TRUE(seen.add_to(&a, pose));
   ASSERT_TRUE(more.add_to(&b, pose));
-  EXPECT_EQ(a.pull, b.pull);
+  EXPECT_EQ(a.information_vector, b.information_vector);
   EXPECT_EQ(a.ranges_m, b.ranges_m);
 }
 

@@ -96,8 +96,8 @@ TEST(CameraModel, ProjectsThroughEveryTermOfTheDistortionAsOpenCvDoes) {
       EXPECT_LT((ray.value - point.normalized()).norm(), 1e-9);
       // Derivatives of the ray by the pixel, against differences.
       int steps = 0;
-      const TurningRay turning =
-          unproject_turning(camera, pixel.value, k_ray_steps_max, steps).value;
+      const RayJacobian turning =
+          unproject_with_jacobian(camera, pixel.value, k_ray_steps_max, steps).value;
       const auto beside = [&](double dx, double dy) {
         return unproject(camera, pixel.value + Vector2{dx, dy}).value;
       };
@@ -124,7 +124,7 @@ TEST(CameraModel, EndsAtItsField) {
       const Vector2 beyond = project(wider, {outside.x(), outside.y(), 1}).value;
       EXPECT_EQ(unproject(camera, beyond).reason, Reason::out_of_range);
       int steps = 0;
-      EXPECT_FALSE(unproject_turning(camera, beyond, k_ray_steps_max, steps));
+      EXPECT_FALSE(unproject_with_jacobian(camera, beyond, k_ray_steps_max, steps));
     }
   }
 }
@@ -133,17 +133,17 @@ TEST(CameraModel, EndsAtItsField) {
 TEST(CameraModel, CountsTheStepsOfASearchForARay) {
   const CameraModel camera = skewed_lens(Lens::rational);
   int needed = 100;
-  ASSERT_TRUE(unproject_turning(camera, {500, 300}, k_ray_steps_max, needed));
+  ASSERT_TRUE(unproject_with_jacobian(camera, {500, 300}, k_ray_steps_max, needed));
   needed -= 100;
   EXPECT_GE(needed, 2);
   int taken = 0;
-  EXPECT_TRUE(unproject_turning(camera, {500, 300}, needed, taken));
+  EXPECT_TRUE(unproject_with_jacobian(camera, {500, 300}, needed, taken));
   EXPECT_EQ(taken, needed);
-  EXPECT_FALSE(unproject_turning(camera, {500, 300}, needed - 1, taken));
+  EXPECT_FALSE(unproject_with_jacobian(camera, {500, 300}, needed - 1, taken));
   EXPECT_EQ(taken, 2 * needed - 1);
-  EXPECT_FALSE(unproject_turning(camera, {500, 300}, 0, taken));
+  EXPECT_FALSE(unproject_with_jacobian(camera, {500, 300}, 0, taken));
   EXPECT_EQ(taken, 2 * needed - 1);
-  EXPECT_TRUE(unproject_turning(skewed_lens(Lens::pinhole), {500, 300}, 0, taken));
+  EXPECT_TRUE(unproject_with_jacobian(skewed_lens(Lens::pinhole), {500, 300}, 0, taken));
   EXPECT_EQ(taken, 2 * needed - 1) << "a pinhole takes none";
 }
 
@@ -155,7 +155,8 @@ TEST(CameraModel, EndsItsSearchWhereTheLensFolds) {
   camera.distortion = {-16, 15, 0, 0, 0, 0, 0, 0};
   int steps = 0;
   const Vector2 pixel{camera.cx + 0.25 * camera.fx, camera.cy};
-  EXPECT_EQ(unproject_turning(camera, pixel, k_ray_steps_max, steps).reason, Reason::out_of_range);
+  EXPECT_EQ(unproject_with_jacobian(camera, pixel, k_ray_steps_max, steps).reason,
+            Reason::out_of_range);
   EXPECT_EQ(steps, 1);
 }
 
@@ -226,7 +227,8 @@ TEST(CameraModel, TurnsEveryPixelThatHasARayIntoIt) {
         const Vector2 pixel{x + 0.3, y + 0.6};
         const Result<Vector3> ray = unproject(camera, pixel);
         int steps = 0;
-        const Result<TurningRay> turning = unproject_turning(camera, pixel, k_ray_steps_max, steps);
+        const Result<RayJacobian> turning =
+            unproject_with_jacobian(camera, pixel, k_ray_steps_max, steps);
         ASSERT_EQ(turning.reason, ray.reason) << pixel.transpose();
         if (!ray) continue;
         ++rays;
@@ -244,7 +246,7 @@ TEST(CameraModel, TakesAtMostFiveStepsThroughTheLensesThatWeShip) {
     for (int y = 0; y <= camera.height; y += 2) {
       for (int x = 0; x <= camera.width; x += 2) {
         int steps = 0;
-        if (!unproject_turning(camera, {x + 0.3, y + 0.6}, k_ray_steps_max, steps)) continue;
+        if (!unproject_with_jacobian(camera, {x + 0.3, y + 0.6}, k_ray_steps_max, steps)) continue;
         ASSERT_LE(steps, 5) << x << ", " << y;
       }
     }
@@ -256,7 +258,8 @@ TEST(CameraModel, TurnsARayAsItsNeighboursLie) {
     const Vector2 pixels[] = {{camera.cx, camera.cy}, {150.2, 180.9}, {300.5, 60.1}};
     for (const Vector2& pixel : pixels) {
       int steps = 0;
-      const TurningRay turning = unproject_turning(camera, pixel, k_ray_steps_max, steps).value;
+      const RayJacobian turning =
+          unproject_with_jacobian(camera, pixel, k_ray_steps_max, steps).value;
       const auto ray = [&](double dx, double dy) {
         return unproject(camera, pixel + Vector2{dx, dy}).value;
       };

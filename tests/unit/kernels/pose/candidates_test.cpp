@@ -81,7 +81,7 @@ TEST(Candidates, TakeNoneWithoutAPlace) {
   Marker marker = marker_at(Vector3::UnitZ(), 0.4);
   marker.flags = k_marker_no_depth;
   EXPECT_FALSE(s.takes(marker));
-  marker.flags = k_marker_ring_depth | k_marker_wrapped | k_marker_saturated;
+  marker.flags = k_marker_annulus_depth | k_marker_wrapped | k_marker_saturated;
   EXPECT_TRUE(s.takes(marker));
 }
 
@@ -153,15 +153,16 @@ TEST(Candidates, AreNearAtEachGateAndNotBeyond) {
   s.tool.shape = MarkerShape::disc;
   s.settings.prior_gate_m = 0.25;
   const Pose prior;
-  const auto near = [&](double range_m, double few_gate_m) {
-    s.settings.few_gate_m = few_gate_m;
+  const auto near = [&](double range_m, double partial_gate_m) {
+    s.settings.partial_gate_m = partial_gate_m;
     s.markers->count = 0;
     s.add(marker_at(Vector3::UnitZ(), range_m));
     s.select(&prior);
     const Candidates& c = *s.candidates;
-    EXPECT_EQ(c.near[1].word[0], 0u);
-    EXPECT_EQ(c.near[2].word[0], 0u);
-    return std::pair<bool, bool>{c.near[0].word[0] == 1, c.nearest[0].word[0] == 1};
+    EXPECT_EQ(c.in_prior_gate[1].word[0], 0u);
+    EXPECT_EQ(c.in_prior_gate[2].word[0], 0u);
+    return std::pair<bool, bool>{c.in_prior_gate[0].word[0] == 1,
+                                 c.in_partial_gate[0].word[0] == 1};
   };
   using Both = std::pair<bool, bool>;
   EXPECT_EQ(near(0.75, 0.125), Both(true, false));
@@ -185,7 +186,7 @@ TEST(Candidates, AreThoseOfAPlainPassWithThoseNearThePredictionFirst) {
   Selection s;
   s.settings.focal_px = 253;
   s.settings.prior_gate_m = 0.1;
-  s.settings.few_gate_m = 0.06;
+  s.settings.partial_gate_m = 0.06;
   s.settings.range_min_m = 0.3;
   s.settings.range_max_m = 0.8;
   for (int round = 0; round < 60; ++round) {
@@ -224,8 +225,8 @@ TEST(Candidates, AreThoseOfAPlainPassWithThoseNearThePredictionFirst) {
       for (std::size_t j = 0; j < k_markers_per_tool_max; ++j) {
         const bool has_place = predicted && j < static_cast<std::size_t>(s.tool.marker_count);
         const double off = has_place ? (c.point_m[a] - prior * s.tool.markers_m[j]).norm() : 1e9;
-        EXPECT_EQ(holds(c.near[j], a), off <= 0.1) << off;
-        EXPECT_EQ(holds(c.nearest[j], a), off <= 0.06) << off;
+        EXPECT_EQ(holds(c.in_prior_gate[j], a), off <= 0.1) << off;
+        EXPECT_EQ(holds(c.in_partial_gate[j], a), off <= 0.06) << off;
         any = any || off <= 0.1;
       }
       EXPECT_FALSE(any && far) << "behind one that is far";
@@ -255,7 +256,7 @@ TEST(Candidates, AreNoneOfNoMarkersAndOfFewerThanNone) {
 TEST(MarkerRange, IsTheSurfaceLessTheToolsOwnBiasAndARadiusMore) {
   Tool tool = disc_tool();
   Marker marker = marker_at(Vector3::UnitZ(), 0.6);
-  marker.bias_taken_m = 0.25F;
+  marker.bias_subtracted_m = 0.25F;
   marker.peak = 500;
   EXPECT_DOUBLE_EQ(centre_range_m(marker, tool), 0.6);
   tool.shape = MarkerShape::sphere;

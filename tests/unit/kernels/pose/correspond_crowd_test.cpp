@@ -76,7 +76,7 @@ Outcome outcome_of(double sigma_m, const CorrespondSettings& settings, bool pred
 }
 
 // A cell of 64 blobs, as in platform/cells/default.toml.
-CorrespondSettings within_a_cell() {
+CorrespondSettings cell_settings() {
   CorrespondSettings settings;
   settings.focal_px = 253;
   settings.markers_max = 64;
@@ -85,13 +85,13 @@ CorrespondSettings within_a_cell() {
 }
 
 TEST(CorrespondCrowd, LosesNothingToTheBudgetsOfACell) {
-  CorrespondSettings unhurried = within_a_cell();
-  unhurried.search_steps_max = 1'000'000;
+  CorrespondSettings unlimited_settings = cell_settings();
+  unlimited_settings.search_steps_max = 1'000'000;
   for (const bool predicted : {false, true}) {
     for (int millimetres = 0; millimetres <= 5; millimetres += test::repetitions(1, 3)) {
       const double sigma_m = 1e-3 * millimetres;
-      const Outcome free = outcome_of(sigma_m, unhurried, predicted);
-      const Outcome cell = outcome_of(sigma_m, within_a_cell(), predicted);
+      const Outcome free = outcome_of(sigma_m, unlimited_settings, predicted);
+      const Outcome cell = outcome_of(sigma_m, cell_settings(), predicted);
       std::printf(
           "  %s prior, %.0f mm: of %d searches none %d, wrong %d, steps %d; "
           "in a cell none %d, wrong %d, full %d\n",

@@ -26,16 +26,16 @@ Markers view_of(const Tool& tool, int seen) {
   return centres(tool, points);
 }
 
-Pose beside_truth(double off_m) {
+Pose displaced_truth(double off_m) {
   return {k_truth.rotation, k_truth.translation + Vector3(off_m, 0, 0)};
 }
 
 TEST(CorrespondPrediction, BelievesThreeMarkersOnlyWhereTheToolCanHaveGot) {
   const Tool pen = test::five_marker_pen();
-  const auto find = [&](int seen, double off_m, double few_gate_m) {
-    const Pose prior = beside_truth(off_m);
+  const auto find = [&](int seen, double off_m, double partial_gate_m) {
+    const Pose prior = displaced_truth(off_m);
     CorrespondSettings settings = ahat();
-    settings.few_gate_m = few_gate_m;
+    settings.partial_gate_m = partial_gate_m;
     return labelings_of(view_of(pen, seen), pen, settings, &prior).count;
   };
   EXPECT_EQ(find(3, 0.019, 0.02), 1);
@@ -48,16 +48,17 @@ TEST(CorrespondPrediction, BelievesThreeMarkersOnlyWhereTheToolCanHaveGot) {
 TEST(CorrespondPrediction, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
   const Tool pen = test::five_marker_pen();
   const Markers markers = view_of(pen, pen.marker_count);
-  const auto worth = [&](const Pose* prior) {
-    return labelings_of(markers, pen, ahat(), prior).items[0].predicted_worth_m2;
+  const auto log_prior_ratio = [&](const Pose* prior) {
+    return labelings_of(markers, pen, ahat(), prior).items[0].log_prior_ratio_m2;
   };
-  const Pose near = beside_truth(0.012), far = beside_truth(0.06);
+  const Pose near = displaced_truth(0.012), far = displaced_truth(0.06);
   const double sigma = ahat().range_sigma_m;
   // In units of sigma squared: 6 ln(1 m / 6 mm) at the prediction.
-  EXPECT_NEAR(worth(&k_truth), 30.7 * sigma * sigma, 1.5 * sigma * sigma);
-  EXPECT_NEAR(worth(&k_truth) - worth(&near), 4 * sigma * sigma, 1.5 * sigma * sigma);
-  EXPECT_EQ(worth(&far), 0);
-  EXPECT_EQ(worth(nullptr), 0);
+  EXPECT_NEAR(log_prior_ratio(&k_truth), 30.7 * sigma * sigma, 1.5 * sigma * sigma);
+  EXPECT_NEAR(log_prior_ratio(&k_truth) - log_prior_ratio(&near), 4 * sigma * sigma,
+              1.5 * sigma * sigma);
+  EXPECT_EQ(log_prior_ratio(&far), 0);
+  EXPECT_EQ(log_prior_ratio(nullptr), 0);
 }
 
 // Log prior ratio: twice the logarithm of the densities' ratio, at least one, by the larger of both
@@ -67,20 +68,21 @@ TEST(CorrespondPrediction, IsWorthTheLogarithmOfItsSureness) {
   const Markers markers = view_of(pen, pen.marker_count);
   CorrespondSettings settings = ahat();
   settings.prior_gate_m = 0.2;
-  const auto worth = [&](const Pose& prior) {
-    return labelings_of(markers, pen, settings, &prior).items[0].predicted_worth_m2 /
+  const auto log_prior_ratio = [&](const Pose& prior) {
+    return labelings_of(markers, pen, settings, &prior).items[0].log_prior_ratio_m2 /
            (settings.range_sigma_m * settings.range_sigma_m);
   };
   for (const auto& [prior_m, range_m] : {std::pair{0.006, 0.0015}, {0.004, 0.007}, {0.02, 0.003}}) {
     settings.prior_sigma_m = prior_m;
     settings.range_sigma_m = range_m;
-    const double sigma = std::max(prior_m, range_m), surest = 6 * std::log(1 / sigma);
-    EXPECT_NEAR(worth(k_truth), surest, 1e-6);
-    EXPECT_NEAR(worth(beside_truth(2 * sigma)), surest - 4, 1e-6);
-    EXPECT_NEAR(worth(beside_truth(0.15)), std::max(1.0, surest - std::pow(0.15 / sigma, 2)), 1e-6);
+    const double sigma = std::max(prior_m, range_m), ratio_max = 6 * std::log(1 / sigma);
+    EXPECT_NEAR(log_prior_ratio(k_truth), ratio_max, 1e-6);
+    EXPECT_NEAR(log_prior_ratio(displaced_truth(2 * sigma)), ratio_max - 4, 1e-6);
+    EXPECT_NEAR(log_prior_ratio(displaced_truth(0.15)),
+                std::max(1.0, ratio_max - std::pow(0.15 / sigma, 2)), 1e-6);
     const Quaternion turn = from_rotation_vector({0, 0.3, 0});
     const Vector3 middle = pen.middle_m();
-    EXPECT_NEAR(worth({turn, k_truth * middle - turn * middle}), surest, 1e-6)
+    EXPECT_NEAR(log_prior_ratio({turn, k_truth * middle - turn * middle}), ratio_max, 1e-6)
         << "turned about its middle";
   }
 }
@@ -101,7 +103,7 @@ TEST(CorrespondPrediction, IsMetOnlyWhereEachMarkerLiesWithinTheGate) {
     const Pose prior{turn, k_truth * middle - turn * middle};
     const Labelings found = labelings_of(view_of(pen, 5), pen, settings, &prior);
     ASSERT_EQ(found.items[0].count, 5);
-    EXPECT_EQ(found.items[0].predicted_worth_m2 > 0, part < 1);
+    EXPECT_EQ(found.items[0].log_prior_ratio_m2 > 0, part < 1);
   }
 }
 
@@ -109,14 +111,14 @@ TEST(CorrespondPrediction, LooksOnlyNearAPredictionThatIsSure) {
   const Tool pen = test::five_marker_pen();
   const Markers markers = view_of(pen, pen.marker_count);
   CorrespondSettings settings = ahat();
-  for (const bool sure : {false, true}) {
-    settings.only_near = sure;
+  for (const bool only_near : {false, true}) {
+    settings.only_near = only_near;
     const auto found_with_prior_off_by = [&](double off_m) {
-      const Pose prior = beside_truth(off_m);
+      const Pose prior = displaced_truth(off_m);
       return labelings_of(markers, pen, settings, &prior).count > 0;
     };
     EXPECT_TRUE(found_with_prior_off_by(0.04));
-    EXPECT_EQ(found_with_prior_off_by(0.06), !sure);
+    EXPECT_EQ(found_with_prior_off_by(0.06), !only_near);
     EXPECT_GT(labelings_of(markers, pen, settings).count, 0) << "without any";
   }
 }

@@ -32,12 +32,12 @@ struct Searched {
   }
 };
 
-// All labelings of `least` or more markers with matching distances and a sufficient fit.
+// All labelings of `markers_min` or more markers with matching distances and a sufficient fit.
 class Enumeration {
  public:
   Enumeration(const Searched& searched, const Tool& tool, const CorrespondSettings& settings,
-              int least)
-      : searched_(searched), tool_(tool), settings_(settings), least_(least) {
+              int markers_min)
+      : searched_(searched), tool_(tool), settings_(settings), markers_min_(markers_min) {
     chosen_.fill(-1);
     name(0, 0);
     std::sort(all_.begin(), all_.end(), [](const Labeling& a, const Labeling& b) {
@@ -56,7 +56,7 @@ class Enumeration {
  private:
   void name(int i, int named) {
     if (i == tool_.marker_count) {
-      if (named >= least_) judge(named);
+      if (named >= markers_min_) judge(named);
       return;
     }
     name(i + 1, named);
@@ -95,7 +95,7 @@ class Enumeration {
   const Searched& searched_;
   const Tool& tool_;
   const CorrespondSettings& settings_;
-  int least_;
+  int markers_min_;
   std::array<std::int16_t, k_markers_per_tool_max> chosen_;
   std::vector<Labeling> all_;
 };
@@ -112,7 +112,7 @@ TEST(CorrespondSearch, FindsTheBestOfAPlainEnumeration) {
     settings.gate_sigmas = 4;
     settings.max_rms_m = round % 2 == 0 ? 0.006 : 0.01;
     settings.min_markers_without_prior = 3 + round % 2;
-    settings.fewer_kept = round % 3;
+    settings.fewer_markers_max = round % 3;
     settings.search_steps_max = 1'000'000;
     test::SceneSettings scene;
     scene.strays = 3 + round % 5 * (tool.marker_count == 3 ? 4 : 2);
@@ -120,8 +120,9 @@ TEST(CorrespondSearch, FindsTheBestOfAPlainEnumeration) {
     scene.missing = round % 7 == 0 && tool.marker_count > 3 ? 1 : 0;
     const Markers markers = test::scene_of(tool, scene, random).markers;
     searched->run(markers, tool, settings);
-    const int least = std::min(settings.min_markers_without_prior, tool.marker_count);
-    const auto expected = Enumeration(*searched, tool, settings, least).best(settings.fewer_kept);
+    const int markers_min = std::min(settings.min_markers_without_prior, tool.marker_count);
+    const auto expected =
+        Enumeration(*searched, tool, settings, markers_min).best(settings.fewer_markers_max);
     ASSERT_EQ(searched->found.count, static_cast<int>(expected.size())) << "round " << round;
     for (std::size_t k = 0; k < expected.size(); ++k) {
       const Labeling& found = searched->found.items[k];
@@ -129,7 +130,7 @@ TEST(CorrespondSearch, FindsTheBestOfAPlainEnumeration) {
       EXPECT_EQ(found.count, expected[k].count);
       EXPECT_EQ(found.rms_m, expected[k].rms_m);
       EXPECT_EQ(found.T_camera_tool.translation, expected[k].T_camera_tool.translation);
-      EXPECT_EQ(found.predicted_worth_m2, 0) << "nothing was predicted";
+      EXPECT_EQ(found.log_prior_ratio_m2, 0) << "nothing was predicted";
     }
     full += expected.size() == k_labelings_max ? 1 : 0;
     several += expected.size() > 1 ? 1 : 0;
@@ -140,10 +141,10 @@ TEST(CorrespondSearch, FindsTheBestOfAPlainEnumeration) {
 
 // One candidate per marker: the search tries an assignment wherever enough markers remain to reach
 // `target`, and none beyond it.
-int names_tried(int markers, int target, int at = 0, int named = 0) {
+int assignments_tried(int markers, int target, int at = 0, int named = 0) {
   if (named == target || named + markers - at < target) return 0;
-  return 1 + names_tried(markers, target, at + 1, named + 1) +
-         names_tried(markers, target, at + 1, named);
+  return 1 + assignments_tried(markers, target, at + 1, named + 1) +
+         assignments_tried(markers, target, at + 1, named);
 }
 
 int labelings_of_size(int markers, int target) {
@@ -168,7 +169,7 @@ Tool distinct_tool(int markers) {
   }
 }
 
-Markers whole_view(const Tool& tool) {
+Markers full_view(const Tool& tool) {
   std::vector<Vector3> points;
   for (int i = 0; i < tool.marker_count; ++i)
     points.push_back(tool.markers_m[static_cast<std::size_t>(i)] + Vector3(0, 0, 0.5));
@@ -190,11 +191,11 @@ TEST(CorrespondSearch, CountsAStepANameAndThirtyTwoAFit) {
     for (int fewer = 0; fewer <= 2; ++fewer) {
       CorrespondSettings settings = exact();
       settings.min_markers_without_prior = 3;
-      settings.fewer_kept = fewer;
-      searched->run(whole_view(tool), tool, settings);
+      settings.fewer_markers_max = fewer;
+      searched->run(full_view(tool), tool, settings);
       int names = 0, fits = 0;
       for (int target = markers; target >= std::max(3, markers - fewer); --target) {
-        names += names_tried(markers, target);
+        names += assignments_tried(markers, target);
         fits += labelings_of_size(markers, target);
       }
       EXPECT_EQ(searched->work.search.steps, names + k_fit_steps * fits) << markers << fewer;
@@ -210,11 +211,11 @@ TEST(CorrespondSearch, EndsWithItsLastStepAndSaysSoOnlyWhereOneIsMissing) {
   auto searched = std::make_unique<Searched>();
   const Tool tool = distinct_tool(4);
   CorrespondSettings settings = exact();
-  settings.fewer_kept = 0;
-  const int needed = names_tried(4, 4) + k_fit_steps;
+  settings.fewer_markers_max = 0;
+  const int needed = assignments_tried(4, 4) + k_fit_steps;
   for (const int budget : {needed, needed - 1, 4, 3, 1, 0}) {
     settings.search_steps_max = budget;
-    searched->run(whole_view(tool), tool, settings);
+    searched->run(full_view(tool), tool, settings);
     EXPECT_EQ(searched->found.count, budget == needed ? 1 : 0) << budget;
     EXPECT_EQ(searched->found.reason, budget == needed ? Reason::none : Reason::search_full);
     EXPECT_EQ(searched->work.search.steps, budget == needed ? needed : std::min(budget, 4));
@@ -228,11 +229,11 @@ TEST(CorrespondSearch, CountsEachPassOfAPredictedTool) {
   auto searched = std::make_unique<Searched>();
   const Tool tool = distinct_tool(4);
   CorrespondSettings settings = exact();
-  settings.fewer_kept = 0;
+  settings.fewer_markers_max = 0;
   const Pose prior{Quaternion::Identity(), Vector3(0, 0, 0.5)};
   for (const bool only_near : {false, true}) {
     settings.only_near = only_near;
-    searched->run(whole_view(tool), tool, settings, &prior);
+    searched->run(full_view(tool), tool, settings, &prior);
     const int passes = only_near ? 2 : 3;
     EXPECT_EQ(searched->found.hypotheses, static_cast<unsigned>(4 * passes));
     EXPECT_EQ(searched->work.search.steps, 4 * passes + k_fit_steps);
@@ -244,22 +245,22 @@ TEST(CorrespondSearch, NeedsThreeMarkersAndAToolOfThreeToAsManyAsThereMayBe) {
   auto searched = std::make_unique<Searched>();
   Tool tool = distinct_tool(3);
   CorrespondSettings settings = exact();
-  searched->run(whole_view(tool), tool, settings);
+  searched->run(full_view(tool), tool, settings);
   EXPECT_EQ(searched->found.count, 1) << "four are wanted, but it has three";
   settings.min_markers_without_prior = 0;
-  Markers two = whole_view(tool);
+  Markers two = full_view(tool);
   two.count = 2;
   searched->run(two, tool, settings);
   EXPECT_EQ(searched->found.reason, Reason::too_few_markers);
   EXPECT_EQ(searched->work.pairs.pairs, 0) << "nothing was compared";
   tool.marker_count = 2;
-  searched->run(whole_view(tool), tool, settings);
+  searched->run(full_view(tool), tool, settings);
   EXPECT_EQ(searched->found.reason, Reason::not_prepared);
   tool.marker_count = k_markers_per_tool_max + 1;
   searched->run({}, tool, settings);
   EXPECT_EQ(searched->found.reason, Reason::not_prepared);
   const Tool large = distinct_tool(k_markers_per_tool_max);
-  searched->run(whole_view(large), large, settings);
+  searched->run(full_view(large), large, settings);
   EXPECT_EQ(searched->found.items[0].count, k_markers_per_tool_max);
 }
 
@@ -272,7 +273,7 @@ TEST(CorrespondSearch, TakesTheLeastMarkersThatItsSettingsAllow) {
     CorrespondSettings settings = exact();
     settings.min_markers_without_prior = alone;
     settings.min_markers_with_prior = predicted;
-    Markers markers = whole_view(tool);
+    Markers markers = full_view(tool);
     markers.count = seen;
     searched->run(markers, tool, settings, with_prior ? &prior : nullptr);
     return searched->found.count > 0 ? searched->found.items[0].count : 0;
@@ -298,10 +299,10 @@ TEST(CorrespondSearch, StartsAnewWithEachCall) {
   const Tool tool = distinct_tool(5);
   CorrespondSettings narrow = exact();
   narrow.search_steps_max = 40;
-  used->run(whole_view(tool), tool, narrow);
+  used->run(full_view(tool), tool, narrow);
   EXPECT_EQ(used->found.reason, Reason::search_full);
-  used->run(whole_view(tool), tool, exact());
-  fresh->run(whole_view(tool), tool, exact());
+  used->run(full_view(tool), tool, exact());
+  fresh->run(full_view(tool), tool, exact());
   EXPECT_EQ(used->found.reason, Reason::none);
   EXPECT_EQ(used->found.count, fresh->found.count);
   EXPECT_EQ(used->found.hypotheses, fresh->found.hypotheses);

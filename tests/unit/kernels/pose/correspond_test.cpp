@@ -40,8 +40,8 @@ TEST(Correspond, NamesTheMarkersOfAPenAmongStrays) {
 struct Tally {
   int found = 0;
   int exact = 0;
-  int gross = 0;  // error above 10 mm or 10 degrees
-  std::uint32_t hypotheses_most = 0;
+  int gross_errors = 0;  // error above 10 mm or 10 degrees
+  std::uint32_t hypotheses_max = 0;
 };
 
 template <class ToolSource>
@@ -57,7 +57,7 @@ Tally tally_of(ToolSource&& next_tool, SceneSettings scene_settings, int frames,
     prior.translation += random.vector(0.01);
     const Labelings labelings =
         labelings_of(scene.markers, tool, ahat(), with_prior ? &prior : nullptr);
-    tally.hypotheses_most = std::max(tally.hypotheses_most, labelings.hypotheses);
+    tally.hypotheses_max = std::max(tally.hypotheses_max, labelings.hypotheses);
     if (labelings.count == 0) continue;
     ++tally.found;
     const Labeling& best = labelings.items[0];
@@ -66,10 +66,10 @@ Tally tally_of(ToolSource&& next_tool, SceneSettings scene_settings, int frames,
     const double off = (best.T_camera_tool * place - scene.T_camera_tool * place).norm();
     const double turned =
         test::angle_between(best.T_camera_tool.rotation, scene.T_camera_tool.rotation);
-    if (off > 0.01 || turned > 0.1745) ++tally.gross;
+    if (off > 0.01 || turned > 0.1745) ++tally.gross_errors;
   }
   std::printf("  %d frames, 0 to 20 strays: found %d, exact %d, gross %d, hypotheses at most %u\n",
-              frames, tally.found, tally.exact, tally.gross, tally.hypotheses_most);
+              frames, tally.found, tally.exact, tally.gross_errors, tally.hypotheses_max);
   return tally;
 }
 
@@ -81,7 +81,7 @@ TEST(Correspond, FindsThePenInEveryFrameWithAndWithoutAMissingMarker) {
     const Tally tally = tally_of(pen, settings, 4200, false, 1);
     EXPECT_GE(tally.found, 4196);
     EXPECT_GE(tally.exact, 4190);
-    EXPECT_EQ(tally.gross, 0);
+    EXPECT_EQ(tally.gross_errors, 0);
   }
 }
 
@@ -89,10 +89,10 @@ TEST(Correspond, FindsRandomToolsOfFourToEightMarkers) {
   const auto any = [](Random& random) { return test::random_tool(random, 4 + random.below(5)); };
   const Tally alone = tally_of(any, {}, 4200, false, 2);
   EXPECT_GE(alone.found, 4196);
-  EXPECT_LE(alone.gross, 8);  // some tools of four random markers are nearly symmetric
+  EXPECT_LE(alone.gross_errors, 8);  // some tools of four random markers are nearly symmetric
   const Tally predicted = tally_of(any, {}, 4200, true, 3);
   EXPECT_GE(predicted.found, 4196);
-  EXPECT_LE(predicted.gross, 1);
+  EXPECT_LE(predicted.gross_errors, 1);
 }
 
 TEST(Correspond, FindsThreeMarkersWhereTheyArePredictedAndOnlyThere) {
@@ -102,7 +102,7 @@ TEST(Correspond, FindsThreeMarkersWhereTheyArePredictedAndOnlyThere) {
   settings.stray_box_m = 1.0;
   const Tally predicted = tally_of(pen, settings, 2100, true, 4);
   EXPECT_GE(predicted.found, 2098);
-  EXPECT_LE(predicted.gross, 2);
+  EXPECT_LE(predicted.gross_errors, 2);
   const Tally alone = tally_of(pen, settings, 2100, false, 4);
   EXPECT_LE(alone.found, 2);
 }
@@ -200,7 +200,7 @@ TEST(Correspond, GivesTheSamePoseForTheSameMarkersInAnyOrder) {
 }
 
 // 256 candidates as dense as the tool itself.
-Markers swarm(const Tool& tool, std::uint64_t seed) {
+Markers dense_candidates(const Tool& tool, std::uint64_t seed) {
   Random random(seed);
   Markers markers;
   while (markers.count < k_blobs_max) {
@@ -214,7 +214,7 @@ TEST(Correspond, EndsAtItsBudgetInASwarmAndSaysSo) {
   const Tool tool = test::random_tool(random, 8);
   CorrespondSettings settings = ahat();
   settings.search_steps_max = 5000;
-  const Labelings found = labelings_of(swarm(tool, 1), tool, settings);
+  const Labelings found = labelings_of(dense_candidates(tool, 1), tool, settings);
   EXPECT_EQ(found.reason, Reason::search_full);
   EXPECT_LE(found.hypotheses, 5000u);
   EXPECT_LE(found.count, k_labelings_max);
@@ -224,7 +224,7 @@ TEST(Correspond, KeepsThePredictedToolWhenASwarmFillsTheBudget) {
   const Tool pen = test::five_marker_pen();
   Random random(10);
   const Scene scene = test::scene_of(pen, {}, random);
-  Markers markers = swarm(pen, 2);
+  Markers markers = dense_candidates(pen, 2);
   Random spread(11);
   for (Marker& marker : markers.items) {
     const Vector3 point = Vector3(0.4, 0, 0.5) + spread.in_box(0.1);

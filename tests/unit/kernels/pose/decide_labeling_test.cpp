@@ -16,7 +16,7 @@ using test::Random;
 
 struct View {
   Markers markers;
-  MarkerSights sights;
+  MarkerObservations sights;
   Labelings labelings;
 };
 
@@ -124,10 +124,10 @@ TEST(DecideLabeling, PrefersMoreMarkersAndLeavesOneOutOnlyWhereNothingElseFits) 
   EXPECT_EQ(decide().chosen, 0);
   view->markers.items[1].surface_range_m += 0.05;
   EXPECT_EQ(decide().chosen, 1);
-  EXPECT_EQ(decide().pose.left_out, -1);
+  EXPECT_EQ(decide().pose.rejected, -1);
   view->labelings.count = 1;
   EXPECT_EQ(decide().chosen, 0);
-  EXPECT_EQ(decide().pose.left_out, 1);
+  EXPECT_EQ(decide().pose.rejected, 1);
 }
 
 TEST(DecideLabeling, TellsHowMuchWorseTheNextOneIsInEitherOrder) {

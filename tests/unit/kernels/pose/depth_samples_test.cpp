@@ -36,7 +36,7 @@ class DepthSamplesOf : public testing::Test {
   }
   DepthSamples ring(double radius_px, int most, int most_pixels) {
     return sampled([&](const DepthView& view, DepthSamples& out) {
-      ring_samples(view, radius_px, most, most_pixels, out);
+      annulus_samples(view, radius_px, most, most_pixels, out);
     });
   }
   template <class Take>
@@ -190,7 +190,7 @@ TEST_F(DepthSamplesOf, AreTheSameOfEightBits) {
   const DepthSamples disc =
       of_eight([](const DepthView& view, DepthSamples& out) { inner_samples(view, 5, 64, out); });
   const DepthSamples around = of_eight(
-      [](const DepthView& view, DepthSamples& out) { ring_samples(view, 4.3, 64, 1000, out); });
+      [](const DepthView& view, DepthSamples& out) { annulus_samples(view, 4.3, 64, 1000, out); });
   const DepthSamples wide_disc = inner(5, 64), wide_ring = ring(4.3, 64, 1000);
   EXPECT_EQ(pixels_of(disc), pixels_of(wide_disc));
   EXPECT_EQ(pixels_of(around), pixels_of(wide_ring));
@@ -270,7 +270,7 @@ TEST_F(DepthSamplesOf, SayHowFarBesideTheMiddleTheyLie) {
     const Vector2 at = blob_.centroid_px + from_middle(pixels_of(found)[i]);
     const Vector3 ray = unproject(camera_, at).value;
     const double beside = (ray / ray.dot(middle) - middle).squaredNorm();
-    EXPECT_NEAR(found.beside_square[i], beside, 1e-6 + 0.01 * beside);
+    EXPECT_NEAR(found.offset_square[i], beside, 1e-6 + 0.01 * beside);
     EXPECT_NEAR(found.radial_factor[i], 1 / ray.z(), 1e-5);
   }
 }

@@ -15,21 +15,22 @@ using test::Random;
 
 const Vector3 k_place(0.08, -0.05, 0.5);
 const MarkerVariance k_usual{0.01, 0, 0.01, 0.0015 * 0.0015};
-const MarkerVariance k_unsure{0.09, 0, 0.09, 0.01 * 0.01};
-constexpr double k_shift_sigma_m = 0.003, k_turn_sigma_rad = 0.03;
+const MarkerVariance k_imprecise{0.09, 0, 0.09, 0.01 * 0.01};
+constexpr double k_translation_sigma_m = 0.003, k_rotation_sigma_rad = 0.03;
 
 // A prediction with errors drawn from its covariance, about the centre of the markers.
-ExpectedPose expect(const Tool& tool, const Pose& truth, Random& random) {
-  ExpectedPose expected;
+PredictedPose expect(const Tool& tool, const Pose& truth, Random& random) {
+  PredictedPose expected;
   expected.reference_m = test::mean_of_markers(tool);
   const auto noise = [&](double sigma) {
     return Vector3(sigma * Vector3(random.normal(), random.normal(), random.normal()));
   };
-  const Quaternion rotation = from_rotation_vector(noise(k_turn_sigma_rad)) * truth.rotation;
-  const Vector3 middle = truth * expected.reference_m + noise(k_shift_sigma_m);
+  const Quaternion rotation = from_rotation_vector(noise(k_rotation_sigma_rad)) * truth.rotation;
+  const Vector3 middle = truth * expected.reference_m + noise(k_translation_sigma_m);
   expected.T_camera_tool = {rotation, middle - rotation * expected.reference_m};
-  expected.covariance.diagonal() << Vector3::Constant(k_shift_sigma_m * k_shift_sigma_m),
-      Vector3::Constant(k_turn_sigma_rad * k_turn_sigma_rad);
+  expected.covariance.diagonal() << Vector3::Constant(k_translation_sigma_m *
+                                                      k_translation_sigma_m),
+      Vector3::Constant(k_rotation_sigma_rad * k_rotation_sigma_rad);
   return expected;
 }
 
@@ -46,10 +47,10 @@ TEST(ExpectedPose, SurprisesByChiSquareOfSixWhereAllIsAsDeclared) {
     const Vector3 tip = test::mean_of_markers(tool) + Vector3(0, 0, 0.15);
     const RefinedPose pose = refine_pose(markers, tip);
     ASSERT_EQ(pose.reason, Reason::none);
-    const double surprise =
-        surprise_of(expect(tool, truth, random), pose.T_camera_tool, pose.covariance, tip);
-    sum += surprise;
-    beyond += surprise > chi_square_limit(6) ? 1 : 0;
+    const double distance_square =
+        mahalanobis_square(expect(tool, truth, random), pose.T_camera_tool, pose.covariance, tip);
+    sum += distance_square;
+    beyond += distance_square > chi_square_limit(6) ? 1 : 0;
   }
   EXPECT_NEAR(sum / k_trials, 6, 0.3);  // mean of 3,000 chi-squares of 6: sigma 0.063
   EXPECT_LE(beyond, 4);                 // 0.3 on average
@@ -64,7 +65,7 @@ TEST(ExpectedPose, SurpriseIsTheDistanceInBothCovariancesAboutItsReference) {
     return Matrix6(root * root.transpose());
   };
   for (int trial = 0; trial < 50; ++trial) {
-    ExpectedPose expected{
+    PredictedPose expected{
         {random.rotation(), random.vector(0.3)}, covariance(), random.vector(0.1)};
     const Vector3 turn = random.vector(0.1), reference_m = random.vector(0.1);
     const Pose found{from_rotation_vector(turn) * expected.T_camera_tool.rotation,
@@ -75,13 +76,14 @@ TEST(ExpectedPose, SurpriseIsTheDistanceInBothCovariancesAboutItsReference) {
     apart << found * expected.reference_m - expected.T_camera_tool * expected.reference_m, turn;
     const Matrix6 both = expected.covariance + j * own * j.transpose();
     const double distance = apart.dot(both.inverse() * apart);
-    EXPECT_NEAR(surprise_of(expected, found, own, reference_m) / distance, 1, 1e-7);
+    EXPECT_NEAR(mahalanobis_square(expected, found, own, reference_m) / distance, 1, 1e-7);
   }
 }
 
 TEST(ExpectedPose, WithoutACovarianceNothingIsExpected) {
-  const ExpectedPose certain;
-  EXPECT_EQ(surprise_of(certain, Pose{}, Matrix6::Zero(), Vector3::Zero()), k_no_surprise_known);
+  const PredictedPose certain;
+  EXPECT_EQ(mahalanobis_square(certain, Pose{}, Matrix6::Zero(), Vector3::Zero()),
+            k_mahalanobis_unknown);
 }
 
 TEST(ExpectedPose, LeavesThePoseToTheMarkers) {
@@ -90,19 +92,22 @@ TEST(ExpectedPose, LeavesThePoseToTheMarkers) {
   for (int trial = 0; trial < 100; ++trial) {
     const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
     const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
-    const ExpectedPose expected = expect(tool, truth, random);
-    const RefinedPose alone = refine_pose(markers, tool.tip_m);
-    const RefinedPose led = refine_pose(markers, tool.tip_m, nullptr, {}, &expected);
-    EXPECT_EQ(alone.surprise, 0);
-    EXPECT_GT(led.surprise, 0);
+    const PredictedPose expected = expect(tool, truth, random);
+    const RefinedPose without_prediction = refine_pose(markers, tool.tip_m);
+    const RefinedPose with_prediction = refine_pose(markers, tool.tip_m, nullptr, {}, &expected);
+    EXPECT_EQ(without_prediction.mahalanobis_square, 0);
+    EXPECT_GT(with_prediction.mahalanobis_square, 0);
     // Both initial guesses converge to one minimum, within the fit's convergence limit.
-    EXPECT_LT((led.T_camera_tool * tool.tip_m - alone.T_camera_tool * tool.tip_m).norm(), 1e-5);
-    EXPECT_TRUE(led.covariance.isApprox(alone.covariance, 1e-3));
+    EXPECT_LT(
+        (with_prediction.T_camera_tool * tool.tip_m - without_prediction.T_camera_tool * tool.tip_m)
+            .norm(),
+        1e-5);
+    EXPECT_TRUE(with_prediction.covariance.isApprox(without_prediction.covariance, 1e-3));
   }
 }
 
 struct Wrong {
-  int alone = 0, led = 0;
+  int without_prediction = 0, with_prediction = 0;
 };
 
 // Three markers of a flat tool seen face-on: two minima that chi-square hardly separates.
@@ -112,18 +117,20 @@ TEST(ExpectedPose, TellsAFlatToolsMinimaApart) {
   Wrong gross;
   for (int trial = 0; trial < 1000; ++trial) {
     const Pose truth = test::tilted_pose(tool, random.within(0.2, 0.5), k_place, random);
-    const auto markers = test::weighted_view(tool, truth, k_unsure, 1, random);
-    const ExpectedPose expected = expect(tool, truth, random);
-    const auto count = [&](const ExpectedPose* by, int& wrong) {
+    const auto markers = test::weighted_view(tool, truth, k_imprecise, 1, random);
+    const PredictedPose expected = expect(tool, truth, random);
+    const auto count = [&](const PredictedPose* by, int& wrong) {
       const RefinedPose pose = refine_pose({markers.data(), 3}, tool.tip_m, nullptr, {}, by);
       wrong += test::angle_between(pose.T_camera_tool.rotation, truth.rotation) > 0.35 ? 1 : 0;
     };
-    count(nullptr, gross.alone);
-    count(&expected, gross.led);
+    count(nullptr, gross.without_prediction);
+    count(&expected, gross.with_prediction);
   }
-  std::printf("  grossly off: %d alone, %d with an expectation\n", gross.alone, gross.led);
-  EXPECT_GT(gross.alone, 80);             // otherwise the test has no effect
-  EXPECT_LE(gross.led, gross.alone / 2);  // the rest is noise, not the other minimum
+  std::printf("  grossly off: %d alone, %d with an expectation\n", gross.without_prediction,
+              gross.with_prediction);
+  EXPECT_GT(gross.without_prediction, 80);  // otherwise the test has no effect
+  EXPECT_LE(gross.with_prediction,
+            gross.without_prediction / 2);  // the rest is noise, not the other minimum
 }
 
 }  // namespace

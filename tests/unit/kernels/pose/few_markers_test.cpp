@@ -10,7 +10,7 @@
 #include "kernels/pose/lever_arm.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
-namespace glint::few_markers_test {
+namespace glint::partial_visibility_test {
 namespace {
 
 constexpr double k_sigma_m = 0.001, k_turn_sigma = 0.01;
@@ -28,10 +28,10 @@ class FewMarkersTest : public testing::Test {
       tool.markers_m[3] = {0.01, -0.04, 0.02};
       tool.marker_radius_m = 0.005;
       EXPECT_EQ(prepare_tool(tool), Reason::none);
-      ExpectedTool& expected = expected_[static_cast<std::size_t>(t)];
+      PredictedTool& expected = expected_[static_cast<std::size_t>(t)];
       expected.tool = &tool;
       expected.T_camera_tool.translation = Vector3(0.3 * t, 0, 0.5);
-      expected.predicted = expected.wanted = t == 0;
+      expected.predicted = expected.needs_labeling = t == 0;
       expect_within(t, k_sigma_m, k_turn_sigma);
     }
     noise_.focal_px = 250;
@@ -52,30 +52,30 @@ class FewMarkersTest : public testing::Test {
     marker.surface_range_m = centre.norm() - tools_[0].marker_radius_m;
     marker.flags = flags;
   }
-  const FewMarkers& name() {
-    work_ = name_few(expected_, *markers_, k_blobs_max, taken_, noise_, *scratch_, named_);
+  const PartialMarkers& name() {
+    work_ = identify_partial(expected_, *markers_, k_blobs_max, taken_, noise_, *scratch_, named_);
     return named_[0];
   }
 
   std::array<Tool, 2> tools_;
-  std::array<ExpectedTool, 2> expected_;
+  std::array<PredictedTool, 2> expected_;
   std::unique_ptr<Markers> markers_ = std::make_unique<Markers>();
   TakenMarkers taken_;
   MarkerNoise noise_;
-  std::unique_ptr<FewScratch> scratch_ = std::make_unique<FewScratch>();
-  std::array<FewMarkers, 2> named_;
-  FewWork work_;
+  std::unique_ptr<PartialScratch> scratch_ = std::make_unique<PartialScratch>();
+  std::array<PartialMarkers, 2> named_;
+  PartialWork work_;
 };
 
 TEST_F(FewMarkersTest, NamesOneAndTwoWhereTheyWerePredicted) {
   show(place(0, 2) + Vector3(0.001, -0.001, 0.002));
   show(Vector3(0.2, 0.2, 0.7));
-  const FewMarkers& one = name();
+  const PartialMarkers& one = name();
   ASSERT_EQ(one.count, 1);
   EXPECT_EQ(one.items[0].of_tool, 2);
   EXPECT_LT((one.items[0].centre_m - place(0, 2)).norm(), 0.003);
   show(place(0, 0));
-  const FewMarkers& two = name();
+  const PartialMarkers& two = name();
   ASSERT_EQ(two.count, 2);
   EXPECT_EQ(two.items[0].of_tool, 0);
   EXPECT_EQ(two.items[1].of_tool, 2);
@@ -83,7 +83,7 @@ TEST_F(FewMarkersTest, NamesOneAndTwoWhereTheyWerePredicted) {
 
 TEST_F(FewMarkersTest, StatesTheMeasurementsOwnCovarianceAlongAndAcrossTheRay) {
   show(place(0, 2));
-  const NamedMarker& named = name().items[0];
+  const IdentifiedMarker& named = name().items[0];
   const Vector3 ray = named.centre_m.normalized(), side = ray.unitOrthogonal();
   EXPECT_NEAR(std::sqrt(ray.dot(named.covariance_m2 * ray)), 0.0015, 1e-6);
   EXPECT_NEAR(std::sqrt(side.dot(named.covariance_m2 * side)), 0.1 / 250 * named.centre_m.norm(),
@@ -109,7 +109,7 @@ TEST_F(FewMarkersTest, NamesNoneThatAnotherToolMayClaimWhetherItIsFoundOrNot) {
   expected_[1].predicted = true;
   show(place(0, 2));
   for (const bool wanted : {false, true}) {
-    expected_[1].wanted = wanted;
+    expected_[1].needs_labeling = wanted;
     EXPECT_EQ(name().count, 0);
     EXPECT_EQ(named_[1].count, 0);
   }
@@ -134,7 +134,7 @@ TEST_F(FewMarkersTest, NamesNoneWhereTheToolsOwnGatesMeet) {
 TEST_F(FewMarkersTest, NamesNoneBeyondItsGateOrHalfHidden) {
   show(place(0, 2) + Vector3(0.012, 0, 0));
   EXPECT_EQ(name().count, 0);
-  show(place(0, 0), k_marker_uneven);
+  show(place(0, 0), k_marker_not_isolated);
   EXPECT_EQ(name().count, 0);
   show(place(0, 1), k_marker_touches_edge);
   EXPECT_EQ(name().count, 0);
@@ -183,9 +183,9 @@ TEST_F(FewMarkersTest, CountsTheGatesOfPredictedToolsAndTheMarkersLookedAt) {
   (void)name();
   EXPECT_EQ(work_.gates, 8) << "also of a tool that is not wanted";
   EXPECT_EQ(work_.tests, 100);
-  const auto work_of = [&](std::span<const ExpectedTool> tools, int markers_max,
-                           std::span<FewMarkers> named) {
-    return name_few(tools, *markers_, markers_max, taken_, noise_, *scratch_, named);
+  const auto work_of = [&](std::span<const PredictedTool> tools, int markers_max,
+                           std::span<PartialMarkers> named) {
+    return identify_partial(tools, *markers_, markers_max, taken_, noise_, *scratch_, named);
   };
   EXPECT_EQ(work_of(expected_, 3, named_).tests, 2 * 3 * 5);
   EXPECT_EQ(work_of(expected_, 0, named_).tests, 0);
@@ -202,7 +202,7 @@ TEST_F(FewMarkersTest, NamesNoneOfAToolThatIsNotPredictedOrNotWanted) {
   for (const bool predicted : {false, true}) {
     for (const bool wanted : {false, true}) {
       expected_[0].predicted = predicted;
-      expected_[0].wanted = wanted;
+      expected_[0].needs_labeling = wanted;
       EXPECT_EQ(name().count, predicted && wanted ? 1 : 0);
     }
   }
@@ -219,7 +219,7 @@ TEST_F(FewMarkersTest, SaysNothingOfAFrameBefore) {
 TEST_F(FewMarkersTest, NamesNoneWithoutDepth) {
   show(place(0, 2), k_marker_no_depth);
   EXPECT_EQ(name().count, 0);
-  show(place(0, 0), k_marker_ring_depth | k_marker_saturated | k_marker_has_neighbour);
+  show(place(0, 0), k_marker_annulus_depth | k_marker_saturated | k_marker_has_neighbour);
   EXPECT_EQ(name().count, 1);
   EXPECT_EQ(named_[0].items[0].of_tool, 0);
 }
@@ -229,7 +229,7 @@ TEST_F(FewMarkersTest, LooksAtTheFirstMarkersAlone) {
   show(Vector3(0.3, 0.3, 0.9));
   show(place(0, 2));
   EXPECT_EQ(name().count, 1);
-  name_few(expected_, *markers_, 1, taken_, noise_, *scratch_, named_);
+  identify_partial(expected_, *markers_, 1, taken_, noise_, *scratch_, named_);
   EXPECT_EQ(named_[0].count, 0);
 }
 
@@ -279,7 +279,7 @@ TEST_F(FewMarkersTest, NamesNoneOfAToolWithAMarkerAtTheCamera) {
   show(place(0, 2) + Vector3(0, 0, 1e-9));
   EXPECT_EQ(name().count, 0);
   // Its gate does not claim another tool's marker.
-  expected_[1].predicted = expected_[1].wanted = true;
+  expected_[1].predicted = expected_[1].needs_labeling = true;
   markers_->count = 0;
   show(place(1, 2));
   EXPECT_EQ(name().count, 0);
@@ -311,11 +311,11 @@ TEST_F(FewMarkersTest, WidensWhatAnImageShowsTooLarge) {
   const Matrix3 large = covariance_of(3 * pi * radius_px * radius_px);
   MarkerVariance variance{0.01, 0, 0.01, 0.0015 * 0.0015};
   LocalRays rays{marker.centroid_px, marker.ray, marker.along_x, marker.along_y};
-  widen(variance, strip_px(marker, rays, tools_[0], range));
+  inflate(variance, rim_offset_px(marker, rays, tools_[0], range));
   ASSERT_GT(variance.xx_px2, 0.1);
   EXPECT_NEAR(side.dot(large * side) / (variance.xx_px2 * std::pow(range / 250, 2)), 1, 1e-9);
   EXPECT_NEAR(marker.ray.dot(large * marker.ray) / variance.range_m2, 1, 1e-9);
 }
 
 }  // namespace
-}  // namespace glint::few_markers_test
+}  // namespace glint::partial_visibility_test

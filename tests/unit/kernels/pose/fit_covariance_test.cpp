@@ -120,14 +120,14 @@ TEST(FitCovariance, IsTheNoiseCarriedThroughTheUnweightedFit) {
   for (int trial = 0; trial < 20; ++trial) {
     const Case c = case_of(random, {0.0015, 0.0002});
     const Vector3 reference = c.points[0] + random.vector(0.2);
-    Matrix6 normal = Matrix6::Zero(), spread = Matrix6::Zero();
+    Matrix6 normal = Matrix6::Zero(), covariance_sum = Matrix6::Zero();
     for (std::size_t i = 0; i < c.points.size(); ++i) {
       Eigen::Matrix<double, 3, 6> j;
       j << Matrix3::Identity(), -cross_matrix(c.points[i] - reference);
       normal += j.transpose() * j;
-      spread += j.transpose() * c.covariances[i] * j;
+      covariance_sum += j.transpose() * c.covariances[i] * j;
     }
-    const Matrix6 expected = normal.inverse() * spread * normal.inverse();
+    const Matrix6 expected = normal.inverse() * covariance_sum * normal.inverse();
     const auto found = fit_covariance(c.points, c.covariances, reference);
     ASSERT_TRUE(found);
     EXPECT_LT((found.value - expected).norm(), 1e-8 * expected.norm());

@@ -70,7 +70,7 @@ TEST(WeightedMarker, RefusesEachFigureThatIsNotPositive) {
   const Vector3 model(0, 0, 0.1);
   const double none = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [&](const MarkerVariance& variance, double range_m = 0.5) {
-    return weigh_marker(model, rays, range_m, variance).reason == Reason::out_of_range;
+    return whiten_marker(model, rays, range_m, variance).reason == Reason::out_of_range;
   };
   EXPECT_FALSE(refused({0.01, 0, 0.02, 1e-6}));
   EXPECT_FALSE(refused({0.01, 0.009, 0.01, 1e-6}));
@@ -85,17 +85,17 @@ TEST(WeightedMarker, RefusesEachFigureThatIsNotPositive) {
   EXPECT_TRUE(refused({0.01, 0, 0.02, none}));
   LocalRays flat = rays;
   flat.along_y = Vector3::Zero();
-  EXPECT_FALSE(weigh_marker(model, flat, 0.5, {}));
+  EXPECT_FALSE(whiten_marker(model, flat, 0.5, {}));
   flat = rays;
   flat.ray.x() = none;
-  EXPECT_FALSE(weigh_marker(model, flat, 0.5, {}));
+  EXPECT_FALSE(whiten_marker(model, flat, 0.5, {}));
 }
 
 // Correlated pixel noise: the whitened residuals have unit covariance.
 TEST(WeightedMarker, WhitensThePixelsCovariance) {
   const LocalRays rays{{100, 90}, {0, 0, 1}, {0.004, 0.001, 0}, {-0.0005, 0.003, 0}};
   const MarkerVariance variance{0.04, 0.012, 0.01, 0.003 * 0.003};
-  const WeightedMarker marker = weigh_marker({0.1, 0.2, 0.3}, rays, 0.7, variance).value;
+  const WeightedMarker marker = whiten_marker({0.1, 0.2, 0.3}, rays, 0.7, variance).value;
   EXPECT_EQ(marker.model_m, Vector3(0.1, 0.2, 0.3));
   EXPECT_EQ(marker.ray, rays.ray);
   EXPECT_EQ(marker.range_m, 0.7);
@@ -146,7 +146,7 @@ TEST(LeverArm, MovesAndTurnsACovarianceAsItsJacobianDoes) {
     EXPECT_LT((moved_covariance(moved_covariance(covariance, lever), -lever) - covariance).norm(),
               1e-10);
     const Quaternion turn = random.rotation();
-    const Matrix6 turned = turned_covariance(covariance, turn);
+    const Matrix6 turned = rotated_covariance(covariance, turn);
     Vector6 a, b;
     a << random.vector(1), random.vector(1);
     b << turn * a.head<3>(), turn * a.tail<3>();

@@ -20,10 +20,10 @@ using test::Random;
 const Vector3 k_place(0.08, -0.05, 0.5);
 const MarkerVariance k_usual{0.01, 0.004, 0.0064, 0.002 * 0.002};
 
-struct Plain {
+struct ReferenceFit {
   Pose pose;
   double chi_square = 0;
-  int steps = 1, taken_back = 0;
+  int steps = 1, undone = 0;
   Reason reason = Reason::none;
 };
 
@@ -37,9 +37,9 @@ bool equations(const std::vector<WeightedMarker>& markers, const Vector3& mean, 
 // is undone and repeated with a hundredth of the diagonal added, then ten times as much. A
 // successful step divides the damping by ten; below 1e-4 it becomes zero. The fit ends with a step
 // that lowers chi-square by less than 1e-4, or after which the next would.
-Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean, const Pose& start,
-                int steps_max, double hopeless) {
-  Plain out;
+ReferenceFit reference_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean,
+                           const Pose& start, int steps_max, double chi_square_stop) {
+  ReferenceFit out;
   out.pose = start;
   NormalEquations here;
   if (!equations(markers, mean, start, here)) return {start, 0, 1, 0, Reason::degenerate};
@@ -47,7 +47,7 @@ Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean,
   while (true) {
     Matrix6 matrix = here.matrix.selfadjointView<Eigen::Lower>();
     matrix.diagonal() *= 1 + damping;
-    const Vector6 step = -matrix.llt().solve(here.slope);
+    const Vector6 step = -matrix.llt().solve(here.gradient);
     Pose there;
     const double length = step.tail<3>().norm();
     const Vector3 axis = step.tail<3>() / length;
@@ -55,7 +55,7 @@ Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean,
         (Quaternion(Eigen::AngleAxisd(2 * std::atan(0.5 * length), axis)) * out.pose.rotation)
             .normalized();
     there.translation = out.pose * mean + step.head<3>() - there.rotation * mean;
-    const double decrease = -step.dot(here.slope);
+    const double decrease = -step.dot(here.gradient);
     double next = decrease;
     if (decrease < 0.01 && decrease < before) next = decrease * decrease / before;
     if (next < 1e-4) {
@@ -64,7 +64,7 @@ Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean,
       return out;
     }
     if (out.steps >= steps_max) break;
-    if (out.steps == 3 && here.chi_square > hopeless) {
+    if (out.steps == 3 && here.chi_square > chi_square_stop) {
       out.reason = Reason::bad_fit;
       return out;
     }
@@ -76,7 +76,7 @@ Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean,
       before = damping > 0 ? 0 : decrease;
       damping = damping > 1e-4 ? damping / 10 : 0;
     } else {
-      ++out.taken_back;
+      ++out.undone;
       damping = std::max(0.01, damping * 10);
     }
   }
@@ -87,13 +87,13 @@ Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean,
 // From any rotation, with ranges of low weight against the pixels: many steps are undone.
 TEST(FitSteps, AreThoseOfThePlainRules) {
   Random random(1);
-  const MarkerVariance sure_pixels{1e-4, 0, 1e-4, 0.03 * 0.03};
-  int taken_back = 0, repeatedly = 0, given_up = 0, degenerate = 0;
+  const MarkerVariance precise_pixels{1e-4, 0, 1e-4, 0.03 * 0.03};
+  int undone = 0, repeatedly = 0, aborted = 0, degenerate = 0;
   for (int trial = 0; trial < 600; ++trial) {
     const Tool tool = trial % 2 == 0 ? test::flat_tool() : test::five_marker_pen();
     const Pose truth = test::tilted_pose(tool, random.within(0, 1.2), k_place, random);
     auto markers =
-        test::weighted_view(tool, truth, trial % 5 == 0 ? k_usual : sure_pixels, 2, random);
+        test::weighted_view(tool, truth, trial % 5 == 0 ? k_usual : precise_pixels, 2, random);
     if (trial % 3 == 0) markers.resize(3);
     const Vector3 mean = mean_of(markers);
     Pose start{random.rotation(), Vector3::Zero()};
@@ -101,24 +101,25 @@ TEST(FitSteps, AreThoseOfThePlainRules) {
     start.translation =
         truth * mean + random.vector(0.05) - start.rotation * mean - Vector3(0, 0, behind_m);
     const int steps_max = trial % 4 == 0 ? 1 + trial / 4 % 12 : 12;
-    const double hopeless = trial % 7 == 0 ? 1e5 : std::numeric_limits<double>::infinity();
-    const Plain plain = plain_fit(markers, mean, start, steps_max, hopeless);
-    const WeightedFit fit = fit_weighted(markers, mean, start, nullptr, steps_max, hopeless);
-    ASSERT_EQ(fit.reason, plain.reason) << trial;
-    ASSERT_EQ(fit.steps, plain.steps) << trial;
-    EXPECT_LT((fit.T_camera_tool * mean - plain.pose * mean).norm(), 1e-7) << trial;
-    EXPECT_LT(test::angle_between(fit.T_camera_tool.rotation, plain.pose.rotation), 1e-6) << trial;
-    if (plain.reason == Reason::none) {
-      EXPECT_NEAR(fit.chi_square, plain.chi_square, 1e-6 * (1 + plain.chi_square)) << trial;
+    const double chi_square_stop = trial % 7 == 0 ? 1e5 : std::numeric_limits<double>::infinity();
+    const ReferenceFit reference = reference_fit(markers, mean, start, steps_max, chi_square_stop);
+    const WeightedFit fit = fit_weighted(markers, mean, start, nullptr, steps_max, chi_square_stop);
+    ASSERT_EQ(fit.reason, reference.reason) << trial;
+    ASSERT_EQ(fit.steps, reference.steps) << trial;
+    EXPECT_LT((fit.T_camera_tool * mean - reference.pose * mean).norm(), 1e-7) << trial;
+    EXPECT_LT(test::angle_between(fit.T_camera_tool.rotation, reference.pose.rotation), 1e-6)
+        << trial;
+    if (reference.reason == Reason::none) {
+      EXPECT_NEAR(fit.chi_square, reference.chi_square, 1e-6 * (1 + reference.chi_square)) << trial;
     }
-    taken_back += plain.taken_back;
-    repeatedly += plain.taken_back > 2 ? 1 : 0;
-    given_up += plain.reason == Reason::bad_fit ? 1 : 0;
-    degenerate += plain.reason == Reason::degenerate ? 1 : 0;
+    undone += reference.undone;
+    repeatedly += reference.undone > 2 ? 1 : 0;
+    aborted += reference.reason == Reason::bad_fit ? 1 : 0;
+    degenerate += reference.reason == Reason::degenerate ? 1 : 0;
   }
-  EXPECT_GT(taken_back, 400);
+  EXPECT_GT(undone, 400);
   EXPECT_GT(repeatedly, 50);
-  EXPECT_GT(given_up, 10);
+  EXPECT_GT(aborted, 10);
   EXPECT_GT(degenerate, 5);
 }
 
@@ -127,7 +128,7 @@ TEST(NormalEquations, HaveAPixelFromATenthOfTheRangeOn) {
   const CameraModel camera = test::pinhole();
   int steps = 0;
   const LocalRays rays = local_rays(camera, {256, 256}, k_ray_steps_max, steps).value;
-  const std::vector<WeightedMarker> one{weigh_marker(Vector3::Zero(), rays, 1.0, k_usual).value};
+  const std::vector<WeightedMarker> one{whiten_marker(Vector3::Zero(), rays, 1.0, k_usual).value};
   const auto has_pixel = [&](double range_m) {
     NormalEquations normal;
     return add_markers(one, {Quaternion::Identity(), Vector3(0, 0, range_m)}, Vector3::Zero(),
@@ -149,7 +150,7 @@ TEST(NormalEquations, AddToWhatIsThere) {
   twice = once;
   ASSERT_TRUE(add_markers(markers, pose, mean, twice));
   EXPECT_TRUE(twice.matrix.isApprox(2 * once.matrix));
-  EXPECT_TRUE(twice.slope.isApprox(2 * once.slope));
+  EXPECT_TRUE(twice.gradient.isApprox(2 * once.gradient));
   EXPECT_DOUBLE_EQ(twice.chi_square, 2 * once.chi_square);
 }
 
@@ -184,7 +185,7 @@ TEST(PosePrior, SlopeIsHalfTheGradientFarFromThePrediction) {
     for (int i = 0; i < 6; ++i) {
       const double slope = (at(i, 1e-5) - at(i, -1e-5)) / 4e-5;
       const double scale = std::sqrt(normal.matrix(i, i) * normal.chi_square);
-      EXPECT_NEAR(normal.slope(i), slope, 2e-4 * scale) << i;
+      EXPECT_NEAR(normal.gradient(i), slope, 2e-4 * scale) << i;
     }
   }
 }

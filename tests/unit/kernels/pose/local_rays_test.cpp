@@ -18,7 +18,7 @@ CameraModel wide_lens() {
 }
 
 // Half a pixel from the pixels that ray_steps_needed() tests, over the whole frame.
-int rays_lost(const CameraModel& camera, int steps_max) {
+int rays_missing(const CameraModel& camera, int steps_max) {
   int lost = 0;
   for (int y = 0; y < camera.height; y += 3) {
     for (int x = 0; x < camera.width; x += 3) {
@@ -67,7 +67,7 @@ TEST(LocalRays, OfATableAreThoseOfItsNeighbours) {
         const Result<LocalRays> local = local_rays(camera, pixel, 0, steps);
         ASSERT_TRUE(local);
         const LocalRays& rays = local.value;
-        const TurningRay truth = unproject_turning(pinhole, pixel, 0, none).value;
+        const RayJacobian truth = unproject_with_jacobian(pinhole, pixel, 0, none).value;
         EXPECT_EQ(rays.pixel, pixel);
         EXPECT_LT((rays.ray - truth.ray).norm(), 1e-6);
         EXPECT_LT((rays.along_x - truth.along_x).norm(), 0.1 * truth.along_x.norm());
@@ -76,10 +76,10 @@ TEST(LocalRays, OfATableAreThoseOfItsNeighbours) {
         EXPECT_NEAR(rays.along_y.dot(rays.ray), 0, 1e-12);
         // The focal length moves the ray in proportion to its distance from the axis.
         EXPECT_TRUE(rays.outward.isApprox(rays.along_x * (x - 4) + rays.along_y * (y - 3)));
-        EXPECT_EQ(steps, 7 + 3 * k_lens_steps_a_ray_looked_up);
+        EXPECT_EQ(steps, 7 + 3 * k_lens_steps_per_table_ray);
         EXPECT_NEAR(rays.steradian_per_pixel(), rays.along_x.cross(rays.along_y).norm(), 1e-15);
-        EXPECT_TRUE(
-            rays.sideways(pixel + Vector2(2, -3)).isApprox(2 * rays.along_x - 3 * rays.along_y));
+        EXPECT_TRUE(rays.perpendicular_offset(pixel + Vector2(2, -3))
+                        .isApprox(2 * rays.along_x - 3 * rays.along_y));
       }
     }
   }
@@ -94,7 +94,7 @@ TEST(LocalRays, OfATableAreNoneWhereItHasNoRayAndStandWhereNoNeighbourHasOne) {
   ASSERT_TRUE(alone);
   EXPECT_TRUE(alone.value.along_x.isZero());
   EXPECT_GT(alone.value.along_y.norm(), 0.01);
-  EXPECT_EQ(steps, 2 * k_lens_steps_a_ray_looked_up);
+  EXPECT_EQ(steps, 2 * k_lens_steps_per_table_ray);
 }
 
 TEST(LocalRays, OfAPolynomialAreItsTurningRays) {
@@ -102,7 +102,7 @@ TEST(LocalRays, OfAPolynomialAreItsTurningRays) {
   const Vector2 pixel{300.25, 200.5};
   int a = 0, b = 0;
   const LocalRays rays = local_rays(camera, pixel, k_ray_steps_max, a).value;
-  const TurningRay turning = unproject_turning(camera, pixel, k_ray_steps_max, b).value;
+  const RayJacobian turning = unproject_with_jacobian(camera, pixel, k_ray_steps_max, b).value;
   EXPECT_EQ(rays.pixel, pixel);
   EXPECT_EQ(rays.ray, turning.ray);
   EXPECT_EQ(rays.along_x, turning.along_x);
@@ -140,7 +140,7 @@ TEST(RayStepsNeeded, LooksAtTheWholeFrame) {
       EXPECT_GT(steps, middle);
       if (needed == 0) needed = steps;
       EXPECT_EQ(steps, needed) << x << " " << y;
-      EXPECT_EQ(rays_lost(camera, steps), 0);
+      EXPECT_EQ(rays_missing(camera, steps), 0);
     }
   }
 }
@@ -148,9 +148,9 @@ TEST(RayStepsNeeded, LooksAtTheWholeFrame) {
 TEST(RayStepsNeeded, LosesNoRayThatTheLensHas) {
   for (const CameraModel& camera :
        {hololens2_ahat().model, hololens1_short_throw().model, wide_lens()}) {
-    EXPECT_EQ(rays_lost(camera, ray_steps_needed(camera)), 0);
+    EXPECT_EQ(rays_missing(camera, ray_steps_needed(camera)), 0);
   }
-  EXPECT_GT(rays_lost(wide_lens(), 6), 1000);
+  EXPECT_GT(rays_missing(wide_lens(), 6), 1000);
 }
 
 TEST(RayStepsNeeded, AreThoseOfLookUpsForATable) {

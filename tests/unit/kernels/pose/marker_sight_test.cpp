@@ -4,7 +4,7 @@
 
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint::marker_sight_test {
+namespace glint::marker_measurement_test {
 namespace {
 
 using test::Random;
@@ -25,10 +25,10 @@ Marker seen_at(const Vector2& pixel, double range_m) {
 
 // Distance in sigmas of the weighted fit between a point and the measured `marker`, at its range.
 double sigmas_off(const Marker& marker, const MarkerNoise& noise, const Vector3& point) {
-  const MarkerSight sight = sight_of(marker, marker.surface_range_m, noise);
+  const MarkerMeasurementModel sight = measurement_model(marker, marker.surface_range_m, noise);
   const Vector3 model = Vector3::Zero();
   const Result<WeightedMarker> weighed =
-      weigh_marker(model, sight.rays, marker.surface_range_m, sight.variance);
+      whiten_marker(model, sight.rays, marker.surface_range_m, sight.variance);
   EXPECT_EQ(weighed.reason, Reason::none);
   const WeightedMarker& m = weighed.value;
   const double along = m.ray.dot(point);
@@ -41,7 +41,7 @@ TEST(MarkerSight, AddsTheDeclaredNoiseToWhatThePixelsTell) {
   Marker marker = seen_at({300, 200}, 0.5);
   marker.sigma_px = {0.3F, 0.05F};
   marker.range_sigma_m = 0.004F;
-  const MarkerVariance variance = sight_of(marker, 0.5, k_declared).variance;
+  const MarkerVariance variance = measurement_model(marker, 0.5, k_declared).variance;
   EXPECT_NEAR(variance.xx_px2, 0.09 + 0.01, 1e-7);
   EXPECT_NEAR(variance.yy_px2, 0.0025 + 0.01, 1e-7);
   EXPECT_EQ(variance.xy_px2, 0);
@@ -49,7 +49,8 @@ TEST(MarkerSight, AddsTheDeclaredNoiseToWhatThePixelsTell) {
 }
 
 TEST(MarkerSight, TakesTheDeclaredNoiseAloneWhereTheMarkersIsNotKnown) {
-  const MarkerVariance variance = sight_of(seen_at({300, 200}, 0.5), 0.5, k_declared).variance;
+  const MarkerVariance variance =
+      measurement_model(seen_at({300, 200}, 0.5), 0.5, k_declared).variance;
   EXPECT_NEAR(variance.xx_px2, 0.01, 1e-15);
   EXPECT_NEAR(variance.yy_px2, 0.01, 1e-15);
   EXPECT_NEAR(variance.range_m2, 4e-6, 1e-18);
@@ -57,16 +58,17 @@ TEST(MarkerSight, TakesTheDeclaredNoiseAloneWhereTheMarkersIsNotKnown) {
 
 TEST(MarkerSight, IsNeverSurerThanItsFloors) {
   for (const double focal_px : {253.0, 0.0}) {
-    const MarkerSight sight = sight_of(seen_at({300, 200}, 0.5), 0.5, {0, 0, focal_px});
-    EXPECT_DOUBLE_EQ(sight.variance.xx_px2, k_pixel_sigma_least_px * k_pixel_sigma_least_px);
-    EXPECT_DOUBLE_EQ(sight.variance.yy_px2, k_pixel_sigma_least_px * k_pixel_sigma_least_px);
-    EXPECT_DOUBLE_EQ(sight.variance.range_m2, k_range_sigma_least_m * k_range_sigma_least_m);
+    const MarkerMeasurementModel sight =
+        measurement_model(seen_at({300, 200}, 0.5), 0.5, {0, 0, focal_px});
+    EXPECT_DOUBLE_EQ(sight.variance.xx_px2, k_pixel_sigma_min_px * k_pixel_sigma_min_px);
+    EXPECT_DOUBLE_EQ(sight.variance.yy_px2, k_pixel_sigma_min_px * k_pixel_sigma_min_px);
+    EXPECT_DOUBLE_EQ(sight.variance.range_m2, k_range_sigma_min_m * k_range_sigma_min_m);
   }
 }
 
 TEST(MarkerSight, TakesTheLensAsTheImageHasIt) {
   const Marker marker = seen_at({450, 60}, 0.5);
-  const MarkerSight sight = sight_of(marker, 0.5, k_declared);
+  const MarkerMeasurementModel sight = measurement_model(marker, 0.5, k_declared);
   EXPECT_EQ(sight.rays.ray, marker.ray);
   EXPECT_EQ(sight.rays.along_x, marker.along_x);
   EXPECT_EQ(sight.rays.along_y, marker.along_y);
@@ -95,14 +97,14 @@ TEST(MarkerSight, TakesAnyFocalLengthThatIsPositive) {
   Marker marker;
   marker.ray = Vector3::UnitZ();
   marker.centroid_px = {31, 42};
-  const MarkerSight sight = sight_of(marker, 0.8, {0.002, 0.1, 0.5});
+  const MarkerMeasurementModel sight = measurement_model(marker, 0.8, {0.002, 0.1, 0.5});
   EXPECT_NEAR(sight.rays.along_x.norm(), 1 / 0.5, 1e-12);
   EXPECT_NEAR(sight.rays.along_y.norm(), 1 / 0.5, 1e-12);
   EXPECT_NEAR(sight.rays.along_x.dot(sight.rays.along_y), 0, 1e-12);
   EXPECT_EQ(sight.rays.pixel, marker.centroid_px);
   EXPECT_NEAR(sight.variance.xx_px2, 0.01, 1e-15);
   // Without a focal length, metres at the marker's range replace pixels.
-  const MarkerSight metres = sight_of(marker, 0.8, {0.002, 0.1, 0});
+  const MarkerMeasurementModel metres = measurement_model(marker, 0.8, {0.002, 0.1, 0});
   EXPECT_NEAR(metres.rays.along_x.norm(), 1 / 0.8, 1e-12);
   EXPECT_EQ(metres.variance.xx_px2, metres.variance.range_m2);
   EXPECT_EQ(metres.variance.yy_px2, metres.variance.range_m2);
@@ -125,10 +127,10 @@ TEST(MarkerSight, FocalLengthMovesTheRayFromTheAxis) {
   Marker marker = seen_at({300, 200}, 0.5);
   MarkerNoise noise = k_declared;
   noise.principal_px = {260, 250};
-  EXPECT_TRUE(sight_of(marker, 0.5, noise)
+  EXPECT_TRUE(measurement_model(marker, 0.5, noise)
                   .rays.outward.isApprox(40 * marker.along_x - 50 * marker.along_y));
   marker.along_x = marker.along_y = Vector3::Zero();
-  EXPECT_TRUE(sight_of(marker, 0.5, noise)
+  EXPECT_TRUE(measurement_model(marker, 0.5, noise)
                   .rays.outward.isApprox(Vector3(marker.ray.x(), marker.ray.y(), 0)));
 }
 
@@ -139,8 +141,8 @@ TEST(MarkerSight, GivesTheSameBitsEverywhere) {
     Marker marker = seen_at({random.within(0, 512), random.within(0, 512)}, 0.5);
     if (trial % 2 == 0) marker.along_x = marker.along_y = Vector3::Zero();
     marker.sigma_px = {0.1F, 0.2F};
-    const MarkerSight sight =
-        sight_of(marker, random.within(0.2, 1), trial % 3 == 0 ? MarkerNoise{} : k_declared);
+    const MarkerMeasurementModel sight = measurement_model(
+        marker, random.within(0.2, 1), trial % 3 == 0 ? MarkerNoise{} : k_declared);
     for (int i = 0; i < 3; ++i) hash.add(sight.rays.along_x(i));
     for (int i = 0; i < 3; ++i) hash.add(sight.rays.along_y(i));
     for (const double v : {sight.variance.xx_px2, sight.variance.yy_px2, sight.variance.range_m2})
@@ -150,4 +152,4 @@ TEST(MarkerSight, GivesTheSameBitsEverywhere) {
 }
 
 }  // namespace
-}  // namespace glint::marker_sight_test
+}  // namespace glint::marker_measurement_test

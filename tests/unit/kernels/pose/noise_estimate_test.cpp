@@ -28,7 +28,7 @@ std::vector<WeightedMarker> seen(const Tool& tool, const Pose& pose, const Marke
     int steps = 0;
     const LocalRays rays =
         local_rays(camera, project(camera, marker.ray).value, k_ray_steps_max, steps).value;
-    marker = weigh_marker(marker.model_m, rays, marker.range_m, taken).value;
+    marker = whiten_marker(marker.model_m, rays, marker.range_m, taken).value;
   }
   return markers;
 }
@@ -103,23 +103,23 @@ TEST_F(NoiseEstimateTest, IsHardlyMovedByAMarkerThatIsFarOff) {
 TEST_F(NoiseEstimateTest, StaysWithinItsLimits) {
   const NoiseEstimate quiet =
       after(2000, test::flat_tool(), {1e-6, 1e-4}, {1e-6, 0, 1e-6, 1e-10}, 9);
-  EXPECT_GE(quiet.range_sigma_m, k_range_sigma_least_m);
-  EXPECT_GE(quiet.pixel_sigma_px, k_pixel_sigma_least_px);
+  EXPECT_GE(quiet.range_sigma_m, k_range_sigma_min_m);
+  EXPECT_GE(quiet.pixel_sigma_px, k_pixel_sigma_min_px);
   NoiseEstimate loud;
   for (int i = 0; i < 1000; ++i) add({{1e3, 1}, {1e3, 1}}, k_declared, loud);
-  EXPECT_EQ(loud.range_sigma_m, k_range_sigma_most_m);
-  EXPECT_EQ(loud.pixel_sigma_px, k_pixel_sigma_most_px);
+  EXPECT_EQ(loud.range_sigma_m, k_range_sigma_max_m);
+  EXPECT_EQ(loud.pixel_sigma_px, k_pixel_sigma_max_px);
 }
 
 // A true sigma of five times the declared one needs as many residuals as the declared one.
 TEST_F(NoiseEstimateTest, DoubtsTheDeclaredNoiseUntilThereAreResiduals) {
-  EXPECT_EQ(variance_doubt({}, k_declared), k_noise_variance_open);
+  EXPECT_EQ(variance_inflation({}, k_declared), k_noise_variance_inflation);
   const MarkerNoise loud{5 * k_declared.range_sigma_m, 5 * k_declared.pixel_sigma_px};
   for (const MarkerNoise& truth : {k_declared, loud}) {
-    double doubt = k_noise_variance_open;
+    double doubt = k_noise_variance_inflation;
     for (const int frames : {1, 5, 30, 900}) {
       const NoiseEstimate found = after(frames, test::flat_tool(), truth, {}, 9);
-      const double now = variance_doubt(found, k_declared);
+      const double now = variance_inflation(found, k_declared);
       EXPECT_GE(now, 1);
       EXPECT_LE(now, 1.3 * doubt) << frames;
       doubt = now;
@@ -132,12 +132,12 @@ TEST_F(NoiseEstimateTest, DoubtsTheDeclaredNoiseUntilThereAreResiduals) {
 TEST_F(NoiseEstimateTest, LosesItsDoubtByDegrees) {
   const double m2 = k_declared.range_sigma_m * k_declared.range_sigma_m;
   const double px2 = k_declared.pixel_sigma_px * k_declared.pixel_sigma_px;
-  double before = k_noise_variance_open;
+  double before = k_noise_variance_inflation;
   for (const double freedom : {1.0, 5.0, 40.0}) {
     NoiseEstimate estimate;
     add({{freedom * m2, freedom}, {freedom * px2, freedom}}, k_declared, estimate);
-    ASSERT_TRUE(estimate.known);
-    const double doubt = variance_doubt(estimate, k_declared);
+    ASSERT_TRUE(estimate.has_residuals);
+    const double doubt = variance_inflation(estimate, k_declared);
     EXPECT_GT(doubt, 1) << freedom;
     EXPECT_LT(doubt, before) << freedom;
     before = doubt;
@@ -149,11 +149,11 @@ TEST_F(NoiseEstimateTest, LearnsNothingFromMarkersThatFixNoPose) {
   const std::vector<WeightedMarker> one(1);
   const MarkerResiduals found =
       residuals_of(one, std::vector<MarkerVariance>(1), Pose{}, k_declared);
-  EXPECT_EQ(found.range.freedom, 0);
-  EXPECT_EQ(found.pixel.freedom, 0);
+  EXPECT_EQ(found.range.redundancy, 0);
+  EXPECT_EQ(found.pixel.redundancy, 0);
   NoiseEstimate estimate;
   add(found, k_declared, estimate);
-  EXPECT_FALSE(estimate.known);
+  EXPECT_FALSE(estimate.has_residuals);
   EXPECT_EQ(noise_now(estimate, k_declared).range_sigma_m, k_declared.range_sigma_m);
 }
 

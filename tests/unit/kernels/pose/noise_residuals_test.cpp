@@ -69,7 +69,7 @@ MarkerResiduals plain_residuals(const std::vector<WeightedMarker>& markers,
       const double square = std::min(sigmas(kind) * sigmas(kind), 9 * free) * own[kind];
       ResidualSum& sum = range ? out.range : out.pixel;
       sum.squares += weight * (square - free * std::max(own[kind] - declared, 0.0));
-      sum.freedom += weight * free;
+      sum.redundancy += weight * free;
     }
   }
   return out;
@@ -97,8 +97,8 @@ TEST(NoiseResiduals, AreThoseOfAWholeMatrixOfLeverages) {
     const MarkerResiduals found = residuals_of(markers, variances, fit.T_camera_tool, k_declared);
     const MarkerResiduals plain =
         plain_residuals(markers, variances, fit.T_camera_tool, k_declared);
-    EXPECT_NEAR(found.range.freedom, plain.range.freedom, 1e-6);
-    EXPECT_NEAR(found.pixel.freedom, plain.pixel.freedom, 1e-6);
+    EXPECT_NEAR(found.range.redundancy, plain.range.redundancy, 1e-6);
+    EXPECT_NEAR(found.pixel.redundancy, plain.pixel.redundancy, 1e-6);
     EXPECT_NEAR(found.range.squares / 1e-6, plain.range.squares / 1e-6, 1e-4);
     EXPECT_NEAR(found.pixel.squares / 1e-2, plain.pixel.squares / 1e-2, 1e-4);
   }
@@ -113,7 +113,7 @@ TEST(NoiseResiduals, HaveTheFreedomThatAFitLeaves) {
   const auto markers = test::weighted_view(tool, truth, alike, 0, random);
   const std::vector<MarkerVariance> variances(markers.size(), alike);
   const MarkerResiduals found = residuals_of(markers, variances, truth, k_declared);
-  EXPECT_NEAR(found.range.freedom + found.pixel.freedom, 3 * 6 - 6, 1e-9);
+  EXPECT_NEAR(found.range.redundancy + found.pixel.redundancy, 3 * 6 - 6, 1e-9);
   EXPECT_NEAR(found.range.squares, 0, 1e-15) << "no residual, no noise of its own";
 }
 
@@ -126,9 +126,9 @@ TEST(NoiseResiduals, AreNoneWithoutMarkersAndOfAPoseBehindTheCamera) {
   const Pose behind{truth.rotation, truth.translation - Vector3(0, 0, 2)};
   for (const MarkerResiduals& none : {residuals_of({}, {}, truth, k_declared),
                                       residuals_of(markers, variances, behind, k_declared)}) {
-    EXPECT_EQ(none.range.freedom, 0);
+    EXPECT_EQ(none.range.redundancy, 0);
     EXPECT_EQ(none.range.squares, 0);
-    EXPECT_EQ(none.pixel.freedom, 0);
+    EXPECT_EQ(none.pixel.redundancy, 0);
     EXPECT_EQ(none.pixel.squares, 0);
   }
 }
@@ -141,7 +141,7 @@ TEST(NoiseEstimate, IsTheWeightedMeanOfTheDeclaredAndTheNewestVariances) {
   const double kept_range = 1 - 12.0 / 300, kept_pixel = 1 - 24.0 / 300;
   const double range_1 = (kept_range * 8 + 40) * m2, range_f1 = kept_range * 8 + 12;
   const double pixel_1 = (kept_pixel * 8 + 30) * px2, pixel_f1 = kept_pixel * 8 + 24;
-  EXPECT_TRUE(estimate.known);
+  EXPECT_TRUE(estimate.has_residuals);
   EXPECT_NEAR(estimate.range_sigma_m, std::sqrt(range_1 / range_f1), 1e-15);
   EXPECT_NEAR(estimate.pixel_sigma_px, std::sqrt(pixel_1 / pixel_f1), 1e-13);
   EXPECT_NEAR(estimate.sums.range.declared, kept_range * 8, 1e-12);
@@ -149,12 +149,12 @@ TEST(NoiseEstimate, IsTheWeightedMeanOfTheDeclaredAndTheNewestVariances) {
   add({{2 * m2, 6, 0}, {9 * px2, 3, 0}}, k_declared, estimate);
   const double again_range = 1 - 6.0 / 300, again_pixel = 1 - 3.0 / 300;
   EXPECT_NEAR(estimate.sums.range.squares / m2, (again_range * range_1 + 2 * m2) / m2, 1e-9);
-  EXPECT_NEAR(estimate.sums.range.freedom, again_range * range_f1 + 6, 1e-12);
+  EXPECT_NEAR(estimate.sums.range.redundancy, again_range * range_f1 + 6, 1e-12);
   EXPECT_NEAR(estimate.sums.pixel.squares / px2, (again_pixel * pixel_1 + 9 * px2) / px2, 1e-9);
-  EXPECT_NEAR(estimate.sums.pixel.freedom, again_pixel * pixel_f1 + 3, 1e-12);
+  EXPECT_NEAR(estimate.sums.pixel.redundancy, again_pixel * pixel_f1 + 3, 1e-12);
   EXPECT_NEAR(estimate.sums.range.declared, again_range * kept_range * 8, 1e-12);
   EXPECT_NEAR(estimate.range_sigma_m,
-              std::sqrt(estimate.sums.range.squares / estimate.sums.range.freedom), 1e-15);
+              std::sqrt(estimate.sums.range.squares / estimate.sums.range.redundancy), 1e-15);
   const MarkerNoise now = noise_now(estimate, k_declared);
   EXPECT_EQ(now.range_sigma_m, estimate.range_sigma_m);
   EXPECT_EQ(now.pixel_sigma_px, estimate.pixel_sigma_px);
@@ -166,11 +166,11 @@ TEST(NoiseEstimate, ForgetsAllBeforeAMemoryFullOfResiduals) {
   NoiseEstimate estimate;
   for (const double freedom : {300.0, 400.0}) {
     add({{freedom * 4e-6, freedom, 0}, {freedom * 0.09, freedom, 0}}, k_declared, estimate);
-    EXPECT_NEAR(estimate.sums.range.freedom, freedom, 1e-12);
+    EXPECT_NEAR(estimate.sums.range.redundancy, freedom, 1e-12);
     EXPECT_NEAR(estimate.range_sigma_m, 0.002, 1e-15);
     EXPECT_NEAR(estimate.pixel_sigma_px, 0.3, 1e-13);
     EXPECT_EQ(estimate.sums.range.declared, 0);
-    EXPECT_EQ(variance_doubt(estimate, k_declared), 1);
+    EXPECT_EQ(variance_inflation(estimate, k_declared), 1);
   }
 }
 
@@ -179,9 +179,9 @@ TEST(NoiseEstimate, TakesResidualsOfBothKindsTogether) {
   for (const auto& [range, pixel] : {std::pair{0.0, 5.0}, {5.0, 0.0}, {0.0, 0.0}}) {
     NoiseEstimate estimate;
     add({{1e-6, range, 0}, {0.01, pixel, 0}}, k_declared, estimate);
-    EXPECT_FALSE(estimate.known);
-    EXPECT_EQ(estimate.sums.range.freedom, 0);
-    EXPECT_EQ(estimate.sums.pixel.freedom, 0);
+    EXPECT_FALSE(estimate.has_residuals);
+    EXPECT_EQ(estimate.sums.range.redundancy, 0);
+    EXPECT_EQ(estimate.sums.pixel.redundancy, 0);
   }
 }
 
@@ -191,17 +191,17 @@ TEST(NoiseEstimate, KeepsEachSigmaWithinItsLimits) {
     add({{-1e-3, 20, 0}, {-1e3, 20, 0}}, k_declared, quiet);
     add({{1e3, 20, 0}, {1e3, 20, 0}}, k_declared, loud);
   }
-  EXPECT_DOUBLE_EQ(quiet.range_sigma_m, k_range_sigma_least_m);
-  EXPECT_DOUBLE_EQ(quiet.pixel_sigma_px, k_pixel_sigma_least_px);
-  EXPECT_DOUBLE_EQ(loud.range_sigma_m, k_range_sigma_most_m);
-  EXPECT_DOUBLE_EQ(loud.pixel_sigma_px, k_pixel_sigma_most_px);
+  EXPECT_DOUBLE_EQ(quiet.range_sigma_m, k_range_sigma_min_m);
+  EXPECT_DOUBLE_EQ(quiet.pixel_sigma_px, k_pixel_sigma_min_px);
+  EXPECT_DOUBLE_EQ(loud.range_sigma_m, k_range_sigma_max_m);
+  EXPECT_DOUBLE_EQ(loud.pixel_sigma_px, k_pixel_sigma_max_px);
 }
 
 // The estimate against one that starts with ten times the declared variance at three degrees of
 // freedom.
 TEST(VarianceDoubt, IsTheLargerOfBothKinds) {
   NoiseEstimate estimate;
-  estimate.known = true;
+  estimate.has_residuals = true;
   estimate.range_sigma_m = 0.003;
   estimate.pixel_sigma_px = 0.05;
   estimate.sums.range = {0, 20, 4};
@@ -212,13 +212,13 @@ TEST(VarianceDoubt, IsTheLargerOfBothKinds) {
   };
   const double range = doubt(20, 4, 0.25), pixel = doubt(9, 2, 4);
   ASSERT_GT(pixel, range);
-  EXPECT_NEAR(variance_doubt(estimate, k_declared), pixel, 1e-12);
+  EXPECT_NEAR(variance_inflation(estimate, k_declared), pixel, 1e-12);
   estimate.pixel_sigma_px = 0.3;
   ASSERT_GT(range, doubt(9, 2, 1.0 / 9));
-  EXPECT_NEAR(variance_doubt(estimate, k_declared), range, 1e-12);
+  EXPECT_NEAR(variance_inflation(estimate, k_declared), range, 1e-12);
   estimate.range_sigma_m = 0.01;
   estimate.pixel_sigma_px = 0.9;
-  EXPECT_EQ(variance_doubt(estimate, k_declared), 1) << "more than ten times already";
+  EXPECT_EQ(variance_inflation(estimate, k_declared), 1) << "more than ten times already";
 }
 
 }  // namespace

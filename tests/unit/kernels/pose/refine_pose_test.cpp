@@ -144,10 +144,10 @@ TEST(RefinePose, LeavesTheMirrorImageThatTheRangesAloneWouldTake) {
   Random random(11);
   const Tool tool = test::flat_tool();
   const Vector3 mean = test::mean_of_markers(tool);
-  const MarkerVariance unsure{0.01, 0, 0.01, 0.03 * 0.03};
+  const MarkerVariance imprecise{0.01, 0, 0.01, 0.03 * 0.03};
   for (int trial = 0; trial < 100; ++trial) {
     const Pose truth = test::tilted_pose(tool, random.within(0.4, 0.8), k_place, random);
-    auto markers = test::weighted_view(tool, truth, unsure, 0, random);
+    auto markers = test::weighted_view(tool, truth, imprecise, 0, random);
     const Pose mirror = depth_flipped(truth, flattest_direction(markers, mean), mean);
     for (WeightedMarker& marker : markers) marker.range_m = (mirror * marker.model_m).norm();
     const RefinedPose pose = refine_pose(markers, tool.tip_m);
@@ -171,8 +171,8 @@ TEST(RefinePose, LeavesOutTheOneMarkerThatDoesNotFit) {
     const RefinedPose pose = refine_pose(markers, tool.tip_m);
     ASSERT_EQ(pose.reason, Reason::none);
     EXPECT_EQ(pose.degrees_of_freedom, 6);
-    named += pose.left_out == bad ? 1 : 0;
-    if (pose.left_out != bad) continue;
+    named += pose.rejected == bad ? 1 : 0;
+    if (pose.rejected != bad) continue;
     const Vector6 error = error_of(pose, truth, tool.tip_m);
     EXPECT_LT(error.dot(pose_factor(pose.covariance).value.solve(error)), 40);
   }
@@ -190,9 +190,9 @@ TEST(RefinePose, LeavesOutTheLikeliestWhereSeveralWouldDo) {
     auto markers = test::weighted_view(tool, truth, k_skewed, 1, random);
     markers[1].range_m += 0.015;
     const RefinedPose pose = refine_pose(markers, tool.tip_m);
-    if (pose.reason != Reason::none || pose.left_out < 0) continue;
+    if (pose.reason != Reason::none || pose.rejected < 0) continue;
     ++several;
-    named += pose.left_out == 1 ? 1 : 0;
+    named += pose.rejected == 1 ? 1 : 0;
   }
   std::printf("  of %d left out one marker, %d the wrong one\n", several, several - named);
   EXPECT_GT(several, 300);
@@ -209,7 +209,7 @@ TEST(RefinePose, CallsItABadFitWhereNoSingleMarkerIsToBlame) {
     markers[3].range_m -= 0.1;
     const RefinedPose pose = refine_pose(markers, tool.tip_m);
     EXPECT_EQ(pose.reason, Reason::bad_fit);
-    EXPECT_EQ(pose.left_out, -1);
+    EXPECT_EQ(pose.rejected, -1);
   }
 }
 
@@ -221,7 +221,7 @@ TEST(RefinePose, CallsFourMarkersOfWhichOneIsWrongABadFit) {
   markers[1].range_m += 0.03;
   const RefinedPose pose = refine_pose(markers, tool.tip_m);
   EXPECT_EQ(pose.reason, Reason::bad_fit);
-  EXPECT_EQ(pose.left_out, -1);
+  EXPECT_EQ(pose.rejected, -1);
   EXPECT_GT(pose.chi_square, 30);
 }
 
@@ -243,9 +243,10 @@ TEST(RefinePose, APriorCountsLikeTheMeasurementItStandsFor) {
     const RefinedPose together = refine_pose(both, tool.tip_m);
     ASSERT_EQ(updated.reason, Reason::none);
     EXPECT_EQ(updated.degrees_of_freedom, 15);
-    const PoseFactor sure = pose_factor(together.covariance).value;
+    const PoseFactor covariance_factor = pose_factor(together.covariance).value;
     const Vector6 apart = error_of(updated, together.T_camera_tool, tool.tip_m);
-    EXPECT_LT(apart.dot(sure.solve(apart)), 0.4) << trial;  // second order in the noise
+    EXPECT_LT(apart.dot(covariance_factor.solve(apart)), 0.4)
+        << trial;  // second order in the noise
     for (int i = 0; i < 6; ++i)
       EXPECT_NEAR(updated.covariance(i, i) / together.covariance(i, i), 1, 0.1);
   }

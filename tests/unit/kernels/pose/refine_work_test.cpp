@@ -27,7 +27,7 @@ void expect_work(const RefineWork& work, int fits, int steps, int marker_steps) 
 }
 
 TEST(RefineWork, MaximumIsTwoFitsOfAllAndOfAllButEach) {
-  // steps_max, left_out_max, left_out_steps_max, markers_left_least
+  // steps_max, rejected_max, rejection_steps_max, markers_kept_min
   expect_work(refine_work_max(8, {3, 1, 2, 4}), 2 * 9, 2 * 3 + 8 * 2 * 2,
               2 * 3 * 8 + 8 * 2 * 2 * 7);
   expect_work(refine_work_max(5, {7, 1, 3, 4}), 2 * 6, 2 * 7 + 5 * 2 * 3,
@@ -51,12 +51,12 @@ TEST(RefineWork, IsAStepForEachMarkerOfAllAndOneFewerOfThoseLeftOut) {
     auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
     markers[static_cast<std::size_t>(trial % 5)].range_m += 0.05;
     RefineSettings all_stay;
-    all_stay.left_out_max = 0;
+    all_stay.rejected_max = 0;
     const RefineWork all = refine_pose(markers, tool.tip_m, nullptr, all_stay).work;
     EXPECT_EQ(all.fits, 2);
     EXPECT_EQ(all.marker_steps, 5 * all.steps);
     const RefinedPose pose = refine_pose(markers, tool.tip_m);
-    ASSERT_EQ(pose.left_out, trial % 5);
+    ASSERT_EQ(pose.rejected, trial % 5);
     EXPECT_EQ(pose.work.fits, 2 * 6);
     EXPECT_GE(pose.work.steps, all.steps + 5 * 2 * 1);
     EXPECT_EQ(pose.work.marker_steps, all.marker_steps + 4 * (pose.work.steps - all.steps));
@@ -90,7 +90,7 @@ TEST(RefinePoseFields, AreThoseOfAFitThatBeginsAtEachMinimum) {
   for (int trial = 0; trial < 60; ++trial) {
     const Pose truth = test::tilted_pose(tool, random.within(0.4, 0.8), k_place, random);
     const auto markers = test::weighted_view(tool, truth, k_noisy, 1, random);
-    ExpectedPose expected{truth, Matrix6::Identity() * 1e-4, mean};
+    PredictedPose expected{truth, Matrix6::Identity() * 1e-4, mean};
     expected.T_camera_tool.translation += Vector3(0.003, -0.002, 0.004);
     const RefinedPose pose = refine_pose(markers, tip, nullptr, {}, &expected);
     ASSERT_EQ(pose.reason, Reason::none);
@@ -102,16 +102,17 @@ TEST(RefinePoseFields, AreThoseOfAFitThatBeginsAtEachMinimum) {
       EXPECT_LT((own - covariance).norm(), 2e-2 * own.norm());
     };
     expect_fit(pose.T_camera_tool, pose.covariance, pose.chi_square);
-    EXPECT_DOUBLE_EQ(pose.surprise,
-                     surprise_of(expected, pose.T_camera_tool, pose.covariance, tip));
+    EXPECT_DOUBLE_EQ(pose.mahalanobis_square,
+                     mahalanobis_square(expected, pose.T_camera_tool, pose.covariance, tip));
     if (!pose.other.exists) continue;
     ++others;
     expect_fit(pose.other.T_camera_tool, pose.other.covariance,
                pose.chi_square + pose.other.delta_chi_square);
-    EXPECT_DOUBLE_EQ(pose.other.surprise,
-                     surprise_of(expected, pose.other.T_camera_tool, pose.other.covariance, tip));
-    EXPECT_LE(pose.chi_square + pose.surprise,
-              pose.chi_square + pose.other.delta_chi_square + pose.other.surprise)
+    EXPECT_DOUBLE_EQ(
+        pose.other.mahalanobis_square,
+        mahalanobis_square(expected, pose.other.T_camera_tool, pose.other.covariance, tip));
+    EXPECT_LE(pose.chi_square + pose.mahalanobis_square,
+              pose.chi_square + pose.other.delta_chi_square + pose.other.mahalanobis_square)
         << "the sum decides";
   }
   EXPECT_GT(others, 40);
@@ -126,16 +127,16 @@ TEST(RefinePoseFields, AreShallowBelowATiltWhereTheFlipIsNearlyAsLikely) {
     const auto markers = test::weighted_view(tool, truth, variance, 0, random);
     return refine_pose(markers, tool.tip_m).shallow;
   };
-  const MarkerVariance unsure{0.25, 0, 0.25, 0.03 * 0.03};
-  EXPECT_TRUE(is_shallow(5, unsure));
-  EXPECT_TRUE(is_shallow(28, unsure));
-  EXPECT_FALSE(is_shallow(30, unsure)) << "tilted";
+  const MarkerVariance imprecise{0.25, 0, 0.25, 0.03 * 0.03};
+  EXPECT_TRUE(is_shallow(5, imprecise));
+  EXPECT_TRUE(is_shallow(28, imprecise));
+  EXPECT_FALSE(is_shallow(30, imprecise)) << "tilted";
   EXPECT_FALSE(is_shallow(28, {1e-4, 0, 1e-4, 1e-8})) << "the flip does not fit";
 }
 
 struct View {
   Markers markers;
-  MarkerSights sights;
+  MarkerObservations sights;
   Labelings labelings;
 };
 
@@ -204,11 +205,11 @@ TEST(DecideWork, EndsWithTheFirstThatIsExplainedWithoutOneMarker) {
   const DecidedLabeling decided = decide(*view, tool);
   EXPECT_EQ(decided.chosen, 0);
   EXPECT_EQ(decided.reason, Reason::none);
-  EXPECT_EQ(decided.pose.left_out, 3);
+  EXPECT_EQ(decided.pose.rejected, 3);
   EXPECT_EQ(decided.work.fits, 3 * 2 + 2 * 6);
   EXPECT_GT(decided.delta_chi_square, 1e8);
   RefineSettings all_stay;
-  all_stay.left_out_max = 0;
+  all_stay.rejected_max = 0;
   const DecidedLabeling none = decide(*view, tool, all_stay);
   EXPECT_EQ(none.chosen, -1);
   EXPECT_EQ(none.reason, Reason::bad_fit);

@@ -54,8 +54,8 @@ double rms_of(const Pose& pose, const std::vector<Vector3>& model,
 }
 
 // No small step in any of the six directions lowers the residual.
-void expect_least_residual(const RigidFit& fit, const std::vector<Vector3>& model,
-                           const std::vector<Vector3>& measured) {
+void expect_minimum(const RigidFit& fit, const std::vector<Vector3>& model,
+                    const std::vector<Vector3>& measured) {
   ASSERT_EQ(fit.reason, Reason::none);
   EXPECT_NEAR(rms_of(fit.transform, model, measured), fit.rms_m, 1e-12);
   for (int step = 0; step < 12; ++step) {
@@ -74,7 +74,7 @@ TEST(RigidFit, LeavesNoSmallerResidualInAnyDirection) {
     const std::vector<Vector3> model(tool.markers_m.begin(), tool.markers_m.begin() + 5);
     std::vector<Vector3> measured = moved({random.rotation(), random.vector(0.5)}, model);
     for (Vector3& point : measured) point += random.vector(0.003);
-    expect_least_residual(fit_rigid(model, measured), model, measured);
+    expect_minimum(fit_rigid(model, measured), model, measured);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(RigidFit, NeverMirrorsWhatOnlyAMirrorWouldFit) {
     for (const Vector3& point : model) mirrored.emplace_back(-point.x(), point.y(), point.z());
     const RigidFit fit = fit_rigid(model, mirrored);
     EXPECT_NEAR(fit.transform.rotation.toRotationMatrix().determinant(), 1.0, 1e-12);
-    expect_least_residual(fit, model, mirrored);
+    expect_minimum(fit, model, mirrored);
   }
 }
 
@@ -208,8 +208,8 @@ TEST(Tool, HasAnotherIdentityWhereAnyPartOfItsBodyDiffers) {
   others.push_back(identity([](Tool& t) { t.marker_radius_m += 1e-9; }));
   others.push_back(identity([](Tool& t) { t.shape = MarkerShape::disc; }));
   for (double DepthBias::*const part :
-       {&DepthBias::offset_m, &DepthBias::per_metre, &DepthBias::dim_m, &DepthBias::range_min_m,
-        &DepthBias::range_max_m})
+       {&DepthBias::offset_m, &DepthBias::per_metre, &DepthBias::low_signal_m,
+        &DepthBias::range_min_m, &DepthBias::range_max_m})
     others.push_back(identity([&](Tool& t) { t.depth_bias.*part += 1e-9; }));
   others.push_back(identity([](Tool& t) { t.depth_bias.range_max_m = 0; }));
   std::sort(others.begin(), others.end());

@@ -19,7 +19,7 @@ double middle_of(std::vector<double> values) {
 }
 
 // Reference version.
-RobustMean plain(const std::vector<double>& values, double gate_least) {
+RobustMean reference_mean(const std::vector<double>& values, double gate_least) {
   RobustMean out;
   out.median = middle_of(values);
   std::vector<double> deviations;
@@ -44,7 +44,7 @@ RobustMean fast(const std::vector<double>& values, double gate_least) {
 }
 
 void expect_same(const std::vector<double>& values, double gate_least) {
-  const RobustMean expected = plain(values, gate_least), found = fast(values, gate_least);
+  const RobustMean expected = reference_mean(values, gate_least), found = fast(values, gate_least);
   EXPECT_EQ(found.median, expected.median) << values.size();
   EXPECT_EQ(found.gate, expected.gate) << values.size();
   EXPECT_NEAR(found.mean, expected.mean, 1e-14) << values.size();

@@ -20,7 +20,7 @@ CameraModel pinhole() {
 }
 
 // Image centroid of the sphere: mean of all positions whose ray meets it, on a grid of 0.1 px.
-Vector2 seen_middle(const CameraModel& camera, const Vector3& centre, double radius_m) {
+Vector2 image_centroid(const CameraModel& camera, const Vector3& centre, double radius_m) {
   const Vector2 about = project(camera, centre).value;
   const double least = std::sqrt(1 - std::pow(radius_m / centre.norm(), 2));
   Vector2 sum = Vector2::Zero();
@@ -45,14 +45,14 @@ Vector3 at_angle(double degrees, double azimuth, double range_m) {
 
 // f a^2 tan(t) / cos^2(t): to second order, the ellipse's centre between its two rims.
 TEST(SphereShift, OfAPinholeIsThatOfTheSilhouettesEllipse) {
-  const SphereShift shift = sphere_shift(pinhole());
+  const SphereOffset shift = sphere_offset(pinhole());
   for (const double degrees : {3.0, 10.0, 25.0, 45.0}) {
     const double angle = degrees * 3.14159265358979323846 / 180;
     const double sine = 0.006 / 0.4, half = std::asin(sine);
     const double ellipse =
         253 * (0.5 * (std::tan(angle + half) + std::tan(angle - half)) - std::tan(angle));
     const Vector2 pixel(350, 350 + 253 * std::tan(angle));
-    const Vector2 moved = shift_px(shift, pixel, sine);
+    const Vector2 moved = offset_px(shift, pixel, sine);
     EXPECT_NEAR(moved.x(), 0, 1e-12) << degrees;
     EXPECT_NEAR(moved.y(), ellipse, 0.002 + 0.01 * ellipse) << degrees;
   }
@@ -62,12 +62,12 @@ TEST(SphereShift, OfAPinholeIsThatOfTheSilhouettesEllipse) {
 TEST(SphereShift, MovesTheMiddleOfWhatIsSeenToTheCentreForEveryLens) {
   const CameraModel lenses[] = {pinhole(), hololens1_short_throw().model, hololens2_ahat().model};
   for (const CameraModel& camera : lenses) {
-    const SphereShift shift = sphere_shift(camera);
+    const SphereOffset shift = sphere_offset(camera);
     for (const double degrees : {10.0, 30.0, 40.0}) {
       for (const double azimuth : {0.3, 2.0, 4.0}) {
         const Vector3 centre = at_angle(degrees, azimuth, 0.3);
-        const Vector2 middle = seen_middle(camera, centre, 0.006);
-        const Vector2 corrected = middle - shift_px(shift, middle, 0.006 / 0.3);
+        const Vector2 middle = image_centroid(camera, centre, 0.006);
+        const Vector2 corrected = middle - offset_px(shift, middle, 0.006 / 0.3);
         EXPECT_LT((corrected - project(camera, centre).value).norm(), 0.012)
             << static_cast<int>(camera.lens) << " " << degrees << " " << azimuth;
       }
@@ -87,9 +87,9 @@ TEST(SphereShift, OfATableIsThatOfItsLens) {
   CameraModel table = camera.model;
   table.lens = Lens::lut;
   table.table = {512, 512, rays.data()};
-  const SphereShift a = sphere_shift(camera.model), b = sphere_shift(table);
+  const SphereOffset a = sphere_offset(camera.model), b = sphere_offset(table);
   for (const double x : {260.0, 300.0, 380.0, 470.0}) {
-    const Vector2 apart = shift_px(a, {x, 300}, 0.02) - shift_px(b, {x, 300}, 0.02);
+    const Vector2 apart = offset_px(a, {x, 300}, 0.02) - offset_px(b, {x, 300}, 0.02);
     EXPECT_LT(apart.norm(), 0.005) << x;
   }
 }
@@ -97,19 +97,19 @@ TEST(SphereShift, OfATableIsThatOfItsLens) {
 // Position far outside, a lens without rays, a camera without a size: the result is finite.
 TEST(SphereShift, IsANumberWhateverTheCamera) {
   CameraModel nothing;
-  CameraModel blind = hololens2_ahat().model;
-  blind.lens = Lens::lut;
-  blind.table = {};
-  for (const CameraModel& camera : {nothing, blind, pinhole()}) {
-    const SphereShift shift = sphere_shift(camera);
+  CameraModel without_rays = hololens2_ahat().model;
+  without_rays.lens = Lens::lut;
+  without_rays.table = {};
+  for (const CameraModel& camera : {nothing, without_rays, pinhole()}) {
+    const SphereOffset shift = sphere_offset(camera);
     for (const double place : {-1e6, 0.0, 350.0, 1e6}) {
       for (const double sine : {0.0, 0.01, 1.0}) {
-        const Vector2 moved = shift_px(shift, {place, -place}, sine);
+        const Vector2 moved = offset_px(shift, {place, -place}, sine);
         EXPECT_TRUE(std::isfinite(moved.x()) && std::isfinite(moved.y())) << place;
       }
     }
   }
-  EXPECT_EQ(shift_px({}, {100, 100}, 0.02), Vector2(0, 0));
+  EXPECT_EQ(offset_px({}, {100, 100}, 0.02), Vector2(0, 0));
 }
 
 // f tan(t) / cos^2(t): the gain is 1 / cos^2(t) per unit of distance, at each table entry.
@@ -119,7 +119,7 @@ TEST(SphereShift, GainOfAPinholeIsTheSquareOfTheSecant) {
   camera.height = 500;
   camera.cx = 200;
   camera.cy = 350;
-  const SphereShift shift = sphere_shift(camera);
+  const SphereOffset shift = sphere_offset(camera);
   EXPECT_EQ(shift.axis_px, Vector2(200, 350));
   const double square = 500.0 * 500 + 350.0 * 350;  // of the farthest corner
   EXPECT_DOUBLE_EQ(shift.entries_per_square_px, (k_sphere_shift_entries - 1) / square);
@@ -132,13 +132,13 @@ TEST(SphereShift, GainOfAPinholeIsTheSquareOfTheSecant) {
 
 // A table with known entries: equal steps of the squared distance, constant beyond the last.
 TEST(SphereShift, InterpolatesItsTableByTheSquaredDistance) {
-  SphereShift shift;
+  SphereOffset shift;
   shift.axis_px = {30, 40};
   shift.entries_per_square_px = 0.01;
   for (std::size_t i = 0; i < k_sphere_shift_entries; ++i)
     shift.gain[i] = 1 + static_cast<double>(i * i);
   const auto gain_at = [&](double x, double y) {
-    const Vector2 moved = shift_px(shift, {30 + x, 40 + y}, 0.1);
+    const Vector2 moved = offset_px(shift, {30 + x, 40 + y}, 0.1);
     EXPECT_NEAR(moved.x() * y, moved.y() * x, 1e-6) << "along the line from the axis";
     return moved.dot(Vector2(x, y)) / (0.01 * (x * x + y * y));
   };
@@ -157,7 +157,7 @@ TEST(SphereShift, InterpolatesItsTableByTheSquaredDistance) {
 // Bits of g++ -O3 and clang++ -O1 on x86-64 and of g++ on arm64.
 TEST(SphereShift, HasTheSameBitsEverywhere) {
   const Vector2 moved =
-      shift_px(sphere_shift(hololens1_short_throw().model), {400.25, 300.5}, 0.02);
+      offset_px(sphere_offset(hololens1_short_throw().model), {400.25, 300.5}, 0.02);
   EXPECT_EQ(moved.x(), 0x1.388c6b358781ap-4);
   EXPECT_EQ(moved.y(), 0x1.0bc5a59044296p-5);
 }

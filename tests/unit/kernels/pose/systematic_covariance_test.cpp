@@ -18,12 +18,12 @@ using test::Random;
 constexpr MarkerVariance k_variance{0.01, 0.002, 0.012, 0.0015 * 0.0015};
 
 // Pixel, range and model position of one marker as the tracker uses them.
-struct Taken {
+struct Observation {
   Vector2 pixel;
   double range_m = 0;
   Vector3 model_m;
 };
-using Error = std::function<void(std::size_t marker, Taken& taken)>;
+using Error = std::function<void(std::size_t marker, Observation& observation)>;
 
 struct Scene {
   Tool tool;
@@ -37,11 +37,12 @@ struct Scene {
     for (int i = 0; i < tool.marker_count; ++i) {
       const auto m = static_cast<std::size_t>(i);
       const Vector3 point = pose * tool.markers_m[m];
-      Taken taken{project(camera, point).value, point.norm(), tool.markers_m[m]};
-      if (error) error(m, taken);
+      Observation observation{project(camera, point).value, point.norm(), tool.markers_m[m]};
+      if (error) error(m, observation);
       int steps = 0;
-      rays.push_back(local_rays(camera, taken.pixel, k_ray_steps_max, steps).value);
-      markers.push_back(weigh_marker(taken.model_m, rays.back(), taken.range_m, k_variance).value);
+      rays.push_back(local_rays(camera, observation.pixel, k_ray_steps_max, steps).value);
+      markers.push_back(
+          whiten_marker(observation.model_m, rays.back(), observation.range_m, k_variance).value);
     }
   }
   [[nodiscard]] Pose fitted() const {
@@ -70,24 +71,24 @@ Matrix6 by_refits(const Tool& tool, const Pose& pose, const Vector3& reference_m
     sum += moved * moved.transpose();
   };
   const Vector2 principal(256, 256);
-  add([&](std::size_t, Taken& t) { t.range_m += k_share * camera.range_offset_m; });
-  add([&](std::size_t, Taken& t) { t.range_m *= 1 + k_share * camera.range_scale; });
-  add([&](std::size_t, Taken& t) {
+  add([&](std::size_t, Observation& t) { t.range_m += k_share * camera.range_offset_m; });
+  add([&](std::size_t, Observation& t) { t.range_m *= 1 + k_share * camera.range_scale; });
+  add([&](std::size_t, Observation& t) {
     t.pixel += k_share * camera.focal_scale * (t.pixel - principal);
   });
   for (int axis = 0; axis < 2; ++axis)
-    add([&](std::size_t, Taken& t) { t.pixel[axis] += k_share * camera.principal_point_px; });
+    add([&](std::size_t, Observation& t) { t.pixel[axis] += k_share * camera.principal_point_px; });
   for (std::size_t m = 0; m < static_cast<std::size_t>(tool.marker_count); ++m) {
-    const auto add_own = [&](const std::function<void(Taken&)>& error) {
-      add([&](std::size_t i, Taken& t) {
+    const auto add_own = [&](const std::function<void(Observation&)>& error) {
+      add([&](std::size_t i, Observation& t) {
         if (i == m) error(t);
       });
     };
-    add_own([&](Taken& t) { t.range_m += k_share * camera.slow_range_m; });
+    add_own([&](Observation& t) { t.range_m += k_share * camera.correlated_range_m; });
     for (int axis = 0; axis < 2; ++axis)
-      add_own([&](Taken& t) { t.pixel[axis] += k_share * camera.slow_centroid_px; });
+      add_own([&](Observation& t) { t.pixel[axis] += k_share * camera.correlated_centroid_px; });
     for (int axis = 0; axis < 3; ++axis)
-      add_own([&](Taken& t) { t.model_m[axis] += k_share * marker_sigma_m; });
+      add_own([&](Observation& t) { t.model_m[axis] += k_share * marker_sigma_m; });
   }
   return sum;
 }
@@ -147,7 +148,7 @@ TEST(SystematicCovariance, HasEachParametersShare) {
                                              camera, marker_sigma_m);
     const Matrix6 expected = by_refits(view.tool, view.pose, reference_m, camera, marker_sigma_m);
     EXPECT_GT(expected.trace(), 0);
-    const bool slow = camera.slow_range_m + camera.slow_centroid_px > 0;
+    const bool slow = camera.correlated_range_m + camera.correlated_centroid_px > 0;
     expect_near(slow ? found.value.correlated.sum() : found.value.calibration, expected, 0.03);
     EXPECT_TRUE((slow ? found.value.calibration : found.value.correlated.sum()).isZero());
     EXPECT_TRUE(found.value.correlated.fast.isApprox(0.25 * found.value.correlated.sum()));
@@ -167,7 +168,9 @@ TEST(SystematicCovariance, FocalLengthActsAsTheLensDistorts) {
   const Pose pose = test::tilted_pose(tool, 0.7, {0.3, -0.1, 0.5}, random);
   constexpr double k_scale = 0.0001;
   const Vector2 principal(256, 256);
-  const Error longer = [&](std::size_t, Taken& t) { t.pixel += k_scale * (t.pixel - principal); };
+  const Error longer = [&](std::size_t, Observation& t) {
+    t.pixel += k_scale * (t.pixel - principal);
+  };
   const Vector6 moved = moved_by(tool, pose, Vector3::Zero(), longer, camera);
   const Scene exact(tool, pose, nullptr, camera);
   CameraUncertainty alone = k_exact_camera;

@@ -60,7 +60,7 @@ TEST(WeightedMarker, CountsInSigmasOfThePixelAndTheRange) {
   const CameraModel camera = test::pinhole();
   int lens_steps = 0;
   const LocalRays rays = local_rays(camera, {256, 256}, k_ray_steps_max, lens_steps).value;
-  const auto marker = weigh_marker(Vector3::Zero(), rays, 0.5, {0.04, 0, 0.01, 0.003 * 0.003});
+  const auto marker = whiten_marker(Vector3::Zero(), rays, 0.5, {0.04, 0, 0.01, 0.003 * 0.003});
   ASSERT_TRUE(marker);
   const Vector3 right(0.5 / 253, 0, 0.5), below(0, 0.5 / 253, 0.5);
   EXPECT_NEAR(marker.value.across_first.dot(right) / 0.5, 5, 1e-9);
@@ -74,23 +74,23 @@ TEST(WeightedMarker, RefusesNoiseAndRangesThatAreNone) {
   const LocalRays flat{{256, 256}, {0, 0, 1}, {0.004, 0, 0}, {0.004, 0, 0}};
   const Vector3 model(0, 0, 0.1);
   const double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(weigh_marker(model, rays, 0.5, {}));
-  EXPECT_EQ(weigh_marker(model, rays, 0.5, {0, 0, 0.01, 1e-6}).reason, Reason::out_of_range);
-  EXPECT_EQ(weigh_marker(model, rays, 0.5, {0.01, 0.01, 0.01, 1e-6}).reason, Reason::out_of_range);
-  EXPECT_EQ(weigh_marker(model, rays, 0.5, {0.01, 0, 0.01, 0}).reason, Reason::out_of_range);
-  EXPECT_EQ(weigh_marker(model, rays, -0.5, {}).reason, Reason::out_of_range);
-  EXPECT_EQ(weigh_marker(model, rays, none, {}).reason, Reason::out_of_range);
-  EXPECT_EQ(weigh_marker(model, flat, 0.5, {}).reason, Reason::out_of_range);
-  EXPECT_EQ(weigh_marker({none, 0, 0}, rays, 0.5, {}).reason, Reason::out_of_range);
+  EXPECT_TRUE(whiten_marker(model, rays, 0.5, {}));
+  EXPECT_EQ(whiten_marker(model, rays, 0.5, {0, 0, 0.01, 1e-6}).reason, Reason::out_of_range);
+  EXPECT_EQ(whiten_marker(model, rays, 0.5, {0.01, 0.01, 0.01, 1e-6}).reason, Reason::out_of_range);
+  EXPECT_EQ(whiten_marker(model, rays, 0.5, {0.01, 0, 0.01, 0}).reason, Reason::out_of_range);
+  EXPECT_EQ(whiten_marker(model, rays, -0.5, {}).reason, Reason::out_of_range);
+  EXPECT_EQ(whiten_marker(model, rays, none, {}).reason, Reason::out_of_range);
+  EXPECT_EQ(whiten_marker(model, flat, 0.5, {}).reason, Reason::out_of_range);
+  EXPECT_EQ(whiten_marker({none, 0, 0}, rays, 0.5, {}).reason, Reason::out_of_range);
 }
 
 // The pose after a small change of the fit's six parameters.
 Pose nudged(const Pose& pose, const Vector3& mean_m, int parameter, double by) {
-  Vector3 turn = Vector3::Zero(), shift = Vector3::Zero();
-  (parameter < 3 ? shift : turn)(parameter % 3) = by;
-  const Vector3 mean = pose * mean_m + shift;
+  Vector3 rotation = Vector3::Zero(), translation = Vector3::Zero();
+  (parameter < 3 ? translation : rotation)(parameter % 3) = by;
+  const Vector3 mean = pose * mean_m + translation;
   Pose out;
-  out.rotation = from_rotation_vector(turn) * pose.rotation;
+  out.rotation = from_rotation_vector(rotation) * pose.rotation;
   out.translation = mean - out.rotation * mean_m;
   return out;
 }
@@ -128,7 +128,7 @@ TEST(NormalEquations, SlopeIsHalfTheGradientOfChiSquareWithAndWithoutAPrior) {
       const double up = equations_at(markers, mean, nudged(pose, mean, i, h), prior).chi_square;
       const double down = equations_at(markers, mean, nudged(pose, mean, i, -h), prior).chi_square;
       const double scale = std::sqrt(normal.matrix(i, i) * normal.chi_square);
-      EXPECT_NEAR((up - down) / (4 * h), normal.slope(i), 2e-4 * scale) << trial << " " << i;
+      EXPECT_NEAR((up - down) / (4 * h), normal.gradient(i), 2e-4 * scale) << trial << " " << i;
     }
   }
 }
@@ -143,8 +143,8 @@ TEST(NormalEquations, MatrixIsHalfTheHessianWhereNothingIsLeft) {
       equations_at(markers, mean, pose, nullptr).matrix.selfadjointView<Eigen::Lower>();
   const double h = 1e-5;
   for (int i = 0; i < 6; ++i) {
-    const Vector6 up = equations_at(markers, mean, nudged(pose, mean, i, h), nullptr).slope;
-    const Vector6 down = equations_at(markers, mean, nudged(pose, mean, i, -h), nullptr).slope;
+    const Vector6 up = equations_at(markers, mean, nudged(pose, mean, i, h), nullptr).gradient;
+    const Vector6 down = equations_at(markers, mean, nudged(pose, mean, i, -h), nullptr).gradient;
     for (int j = 0; j < 6; ++j) {
       const double scale = std::sqrt(matrix(i, i) * matrix(j, j));
       EXPECT_NEAR((up(j) - down(j)) / (2 * h), matrix(i, j), 1e-5 * scale) << i << " " << j;
@@ -247,23 +247,24 @@ TEST(WeightedFit, GivesUpWhereAStartLeadsNowhereNear) {
   test::Random random(13);
   const Tool tool = test::five_marker_pen();
   const Vector3 mean = test::mean_of_markers(tool);
-  constexpr double k_hopeless = 1000;
+  constexpr double k_chi_square_abort = 1000;
   int given_up = 0;
   for (int trial = 0; trial < 300; ++trial) {
     const Pose truth = test::tilted_pose(tool, random.within(0, 1.2), k_place, random);
     const auto markers = test::weighted_view(tool, truth, k_skewed, 1, random);
     const Pose flip = depth_flipped(truth, flattest_direction(markers, mean), mean);
     const WeightedFit fit =
-        fit_weighted(markers, mean, flip, nullptr, k_refine_steps_max, k_hopeless);
+        fit_weighted(markers, mean, flip, nullptr, k_refine_steps_max, k_chi_square_abort);
     const WeightedFit whole = fit_weighted(markers, mean, flip, nullptr, k_refine_steps_max);
     if (fit.reason != Reason::bad_fit) {
       EXPECT_EQ(fit.chi_square, whole.chi_square);
       continue;
     }
     ++given_up;
-    EXPECT_EQ(fit.steps, k_steps_granted);
+    EXPECT_EQ(fit.steps, k_steps_before_limit);
     const double off = test::angle_between(whole.T_camera_tool.rotation, truth.rotation);
-    EXPECT_TRUE(whole.chi_square > k_hopeless / 2 || off < 0.05) << whole.chi_square << " " << off;
+    EXPECT_TRUE(whole.chi_square > k_chi_square_abort / 2 || off < 0.05)
+        << whole.chi_square << " " << off;
   }
   EXPECT_GT(given_up, 150);
 }

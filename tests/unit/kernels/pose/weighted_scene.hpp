@@ -30,7 +30,7 @@ inline Vector3 mean_of_markers(const Tool& tool) {
 }
 
 // The smallest rotation from the optical axis to `place`, which is in front of the camera.
-inline Quaternion turn_to(const Vector3& place) {
+inline Quaternion rotation_to(const Vector3& place) {
   const Vector3 ahead = Vector3::UnitZ();
   Quaternion half;  // 1 + cos and the cross product: twice cos(angle / 2) times the quaternion
   half.w() = 1 + ahead.dot(place.normalized());
@@ -46,7 +46,7 @@ inline Pose tilted_pose(const Tool& tool, double tilt_rad, const Vector3& place,
   const Quaternion spin = from_rotation_vector(Vector3(0, 0, random.within(0, 6.28)));
   Pose pose;
   const Quaternion tilt = from_rotation_vector(tilt_rad * Vector3(axis.cosine, axis.sine, 0));
-  pose.rotation = (turn_to(place) * tilt * spin * facing).normalized();
+  pose.rotation = (rotation_to(place) * tilt * spin * facing).normalized();
   pose.translation = place - pose.rotation * mean_of_markers(tool);
   return pose;
 }
@@ -69,7 +69,7 @@ inline std::vector<WeightedMarker> weighted_view(const Tool& tool, const Pose& p
     const double range = point.norm() + noise * std::sqrt(variance.range_m2) * random.normal();
     int lens_steps = 0;
     const LocalRays rays = local_rays(camera, pixel, k_ray_steps_max, lens_steps).value;
-    markers.push_back(weigh_marker(model, rays, range, variance).value);
+    markers.push_back(whiten_marker(model, rays, range, variance).value);
   }
   return markers;
 }

@@ -12,11 +12,11 @@
 namespace glint::align_model_test {
 namespace {
 
+using test::BoxArm;
 using test::k_truth;
-using test::Model;
 
 struct Scene {
-  Model model;
+  BoxArm model;
   Pinhole camera{160, 120, 150, 150, 80, 60};
   std::vector<float> depth = std::vector<float>(160 * 120);
   std::vector<std::uint8_t> mask;
@@ -45,9 +45,9 @@ struct Scene {
     const SceneView one[] = {view()};
     return align_model(one, start, settings, scratch);
   }
-  Judgement judge(const Pose& T) {
+  AlignmentScore judge(const Pose& T) {
     const SceneView one[] = {view()};
-    return judge_alignment(one, T, {}, scratch);
+    return score_alignment(one, T, {}, scratch);
   }
 };
 
@@ -61,7 +61,7 @@ double degrees_between(const Pose& a, const Pose& b) {
   return a.rotation.angularDistance(b.rotation) * 57.29578;
 }
 
-AlignmentSettings only(Matching matching) {
+AlignmentSettings single_gate(Matching matching) {
   AlignmentSettings settings;
   for (Gate& gate : settings.gates) {
     gate.matching = matching;
@@ -81,7 +81,7 @@ TEST(AlignModel, ReturnsToTheTruthFromTenCentimetresAndDegrees) {
 TEST(AlignModel, ReachesTheSameEndByEachWayOfMatching) {
   Scene scene;
   for (const Matching matching : {Matching::point, Matching::plane, Matching::projective}) {
-    const ModelAlignment end = scene.align(start_off(0.01, 1), only(matching));
+    const ModelAlignment end = scene.align(start_off(0.01, 1), single_gate(matching));
     ASSERT_EQ(end.reason, Reason::none);
     // Points are 9 mm apart in this scene: nearest-point pairs on a shifted raster converge slowly.
     const double least = matching == Matching::projective ? 3e-4 : 4e-3;
@@ -176,41 +176,41 @@ TEST(AlignModel, TakesNoHeapAndGivesTheSameBitsAgain) {
 
 TEST(JudgeAlignment, TellsAnOutlineFromAPatchOfAWall) {
   Scene scene;
-  const Judgement there = scene.judge(k_truth);
+  const AlignmentScore there = scene.judge(k_truth);
   EXPECT_GT(there.outline.falls, 200);
-  EXPECT_EQ(there.outline.goes_on, 0);
+  EXPECT_EQ(there.outline.continues, 0);
   EXPECT_EQ(there.outline_share(), 1);
   // A wall that contains a box's face explains that face, but continues beside it.
   const Pose upright{Quaternion::Identity(), {0, 0, 1}};
   std::fill(scene.depth.begin(), scene.depth.end(), 1.0f);
-  const Judgement flat = scene.judge(upright);
+  const AlignmentScore flat = scene.judge(upright);
   EXPECT_GT(flat.inlier_share(), 0.99);
   EXPECT_EQ(flat.outline.falls, 0);
-  EXPECT_GT(flat.outline.goes_on, 100);  // a face of 30 pixels a side
+  EXPECT_GT(flat.outline.continues, 100);  // a face of 30 pixels a side
   EXPECT_LT(flat.outline_share(), 0.2);
   // A pixel in front of the edge, or without depth, counts as neither.
   for (const float beside : {0.0f, 0.5f}) {
     std::vector<float>& depth = scene.depth;
     const AlignmentScratch::View& seen = scene.scratch.views[0];
     for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = seen.triangle[i] >= 0 ? 1.0f : beside;
-    const Judgement open = scene.judge(upright);
-    EXPECT_EQ(open.outline.falls + open.outline.goes_on, 0);
+    const AlignmentScore open = scene.judge(upright);
+    EXPECT_EQ(open.outline.falls + open.outline.continues, 0);
     EXPECT_EQ(open.outline_share(), 1);
   }
 }
 
 TEST(JudgeAlignment, TellsRightFromSeenThroughAndHidden) {
   Scene scene;
-  const Judgement right = scene.judge(k_truth);
+  const AlignmentScore right = scene.judge(k_truth);
   EXPECT_GT(right.inlier_share(), 0.999);
-  EXPECT_EQ(right.seen_through, 0);
+  EXPECT_EQ(right.free_space_violations, 0);
   EXPECT_LT(right.median_m, 1e-3);
   Pose aside = k_truth;
   aside.translation.x() += 0.1;
   EXPECT_GT(scene.judge(aside).seen_through_share(), 0.1);
   Pose behind = k_truth;
   behind.translation.z() += 0.2;
-  EXPECT_GT(scene.judge(behind).hidden, 0);
+  EXPECT_GT(scene.judge(behind).occluded, 0);
   scene.mask.assign(scene.depth.size(), 0);
   for (std::size_t i = 0; i < scene.depth.size(); ++i) scene.mask[i] = scene.depth[i] < 1.8f;
   EXPECT_GT(scene.judge(k_truth).mask_share(), 0.98);
@@ -227,7 +227,7 @@ TEST(JudgeAlignment, GivesTheMedianOfAFewDistances) {
     if (whole[i] < 1.8f) scene.depth[i] = whole[i] + static_cast<float>(shifts_m[places++]);
   }
   ASSERT_EQ(places, 3);
-  const Judgement judged = scene.judge(k_truth);
+  const AlignmentScore judged = scene.judge(k_truth);
   ASSERT_EQ(judged.measured, 3);
   EXPECT_NEAR(judged.median_m, shifts_m[1], 0.15 * shifts_m[1]) << "along the ray, so some longer";
 }

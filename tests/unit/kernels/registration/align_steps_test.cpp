@@ -16,14 +16,14 @@
 namespace glint::align_steps_test {
 namespace {
 
+using test::BoxArm;
 using test::k_truth;
-using test::Model;
 
 constexpr int k_pixels = 160 * 120;
 
 // The arm in front of a wall, seen by two cameras.
 struct TwoViews {
-  Model model;
+  BoxArm model;
   Pinhole camera{160, 120, 150, 150, 80, 60};
   std::vector<float> depth[2];
   Pose T_camera_world[2] = {
@@ -54,7 +54,7 @@ struct TwoViews {
   }
 };
 
-AlignmentSettings gates(const std::vector<Gate>& of) {
+AlignmentSettings settings_with_gates(const std::vector<Gate>& of) {
   AlignmentSettings settings;
   std::copy(of.begin(), of.end(), settings.gates.begin());
   settings.gate_count = static_cast<int>(of.size());
@@ -74,35 +74,35 @@ TEST(AlignSteps, AreThoseOfGaussAndNewtonOverTheSeenPointsOfAllViews) {
   TwoViews scene(0.004);
   const std::vector<SceneView> views = scene.views();
   AlignmentRun run;
-  run.start(start_off(), gates({k_projective}));
+  run.start(start_off(), settings_with_gates({k_projective}));
   while (run.step(views, scene.scratch)) {
   }
   const ModelAlignment& found = run.result();
   ASSERT_EQ(found.reason, Reason::none);
-  Vector3 middle = Vector3::Zero();
+  Vector3 centroid = Vector3::Zero();
   int seen = 0;
   for (std::size_t v = 0; v < 2; ++v) {
     AlignmentScratch::View& memory = scene.scratch.views[v];
     render_model(views[v], start_off(), 1, memory);
-    for (int i = 0; i < memory.seen_count; ++i, ++seen) {
-      middle += views[v].T_camera_world.inverse() *
-                memory.seen[static_cast<std::size_t>(i)].point.cast<double>();
+    for (int i = 0; i < memory.visible_count; ++i, ++seen) {
+      centroid += views[v].T_camera_world.inverse() *
+                  memory.seen[static_cast<std::size_t>(i)].point.cast<double>();
     }
   }
-  middle /= seen;
-  EXPECT_LT((run.middle() - middle).norm(), 1e-9);
+  centroid /= seen;
+  EXPECT_LT((run.centroid() - centroid).norm(), 1e-9);
   AlignmentSums sums;
   for (std::size_t v = 0; v < 2; ++v) {
     const AlignmentScratch::View& memory = scene.scratch.views[v];
-    add_pairs(std::span(memory.seen).first(static_cast<std::size_t>(memory.seen_count)), Pose{},
+    add_pairs(std::span(memory.seen).first(static_cast<std::size_t>(memory.visible_count)), Pose{},
               Matching::projective, k_projective.gate_m, views[v], {},
-              views[v].T_camera_world.inverse().rotation, views[v].T_camera_world * middle, sums);
+              views[v].T_camera_world.inverse().rotation, views[v].T_camera_world * centroid, sums);
   }
   const Matrix6 matrix = sums.matrix.selfadjointView<Eigen::Lower>();
   const Vector6 step = matrix.ldlt().solve(-sums.slope);
   const Vector3 shift = step.head<3>(), turn = step.tail<3>();
   const Quaternion by(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
-  const Vector3 origin = by * (start_off().translation - middle) + middle + shift;
+  const Vector3 origin = by * (start_off().translation - centroid) + centroid + shift;
   EXPECT_LT((found.T_world_base.translation - origin).norm(), 1e-8);
   EXPECT_LT(found.T_world_base.rotation.angularDistance(by * start_off().rotation), 1e-7);
   EXPECT_GT(shift.norm(), 1e-3);
@@ -112,7 +112,7 @@ TEST(AlignSteps, AreThoseOfGaussAndNewtonOverTheSeenPointsOfAllViews) {
   // Covariance of the base's origin, which a rotation about the centroid translates.
   Matrix6 to_origin = Matrix6::Identity();
   for (int axis = 0; axis < 3; ++axis) {
-    to_origin.block<3, 1>(0, 3 + axis) = Vector3::Unit(axis).cross(origin - middle);
+    to_origin.block<3, 1>(0, 3 + axis) = Vector3::Unit(axis).cross(origin - centroid);
   }
   const Matrix6 expected =
       to_origin * (matrix.inverse() * sums.squares / (sums.count - 6)) * to_origin.transpose();
@@ -128,9 +128,9 @@ TEST(AlignSteps, EndAtRestOrAsManyAsTheGateHas) {
     gate.gate_m = matching == Matching::projective ? 0.035 : 0.15;
     gate.step = 4;
     gate.steps_max = 7;
-    AlignmentSettings settings = gates({gate});
-    settings.rest_shift_m = shift;
-    settings.rest_turn_rad = turn;
+    AlignmentSettings settings = settings_with_gates({gate});
+    settings.convergence_translation_m = shift;
+    settings.convergence_rotation_rad = turn;
     return align_model(scene.views(), k_truth, settings, scene.scratch).steps;
   };
   EXPECT_EQ(steps_of(Matching::projective, 9, 9), 1);
@@ -155,8 +155,8 @@ TEST(AlignSteps, TakeAsManySlicesAsTheirGatesSay) {
                 5 + 8,
                 7 + 12}};
   for (const auto& c : cases) {
-    AlignmentSettings settings = gates(c.gates);
-    settings.rest_shift_m = settings.rest_turn_rad = -1;  // never converges
+    AlignmentSettings settings = settings_with_gates(c.gates);
+    settings.convergence_translation_m = settings.convergence_rotation_rad = -1;  // never converges
     EXPECT_EQ(AlignmentRun::slices_max(settings, 1), c.one_view);
     EXPECT_EQ(AlignmentRun::slices_max(settings, 2), c.two_views);
     if (c.gates[0].matching != Matching::projective) continue;  // may converge earlier
@@ -197,8 +197,8 @@ TEST(AlignSteps, TakeTheirStepsFromTheBudgetInSlicesOfAnySize) {
   Gate gate = k_projective;
   gate.step = 3;
   gate.steps_max = k_steps;
-  AlignmentSettings settings = gates({gate});
-  settings.rest_shift_m = settings.rest_turn_rad = -1;  // never converges
+  AlignmentSettings settings = settings_with_gates({gate});
+  settings.convergence_translation_m = settings.convergence_rotation_rad = -1;  // never converges
   const std::vector<SceneView> views = scene.views();
   for (const int budget : {1, 1'000, SliceSize::k_steps_max}) {
     AlignmentRun run;
@@ -210,9 +210,9 @@ TEST(AlignSteps, TakeTheirStepsFromTheBudgetInSlicesOfAnySize) {
       steps += budget - left.left();
       ASSERT_LE(budget - left.left(), budget + k_pair_steps + k_solve_steps);
     }
-    const int seen = scene.scratch.views[0].seen_count + scene.scratch.views[1].seen_count;
+    const int seen = scene.scratch.views[0].visible_count + scene.scratch.views[1].visible_count;
     EXPECT_GT(seen, 300);
-    EXPECT_EQ(steps, seen * (k_middle_steps + k_steps * k_pair_steps) + k_steps * k_solve_steps)
+    EXPECT_EQ(steps, seen * (k_centroid_steps + k_steps * k_pair_steps) + k_steps * k_solve_steps)
         << budget;
   }
 }
@@ -222,7 +222,7 @@ TEST(AlignSteps, SearchTheSceneNoThinnerThanEveryOtherPixel) {
   TwoViews scene(0.001);
   for (const int step : {1, 2, 3, 5}) {
     Gate gate{0.15, Matching::plane, step, 1, false};
-    (void)align_model(scene.views(), k_truth, gates({gate}), scene.scratch);
+    (void)align_model(scene.views(), k_truth, settings_with_gates({gate}), scene.scratch);
     for (const AlignmentScratch::View& view : scene.scratch.views) {
       EXPECT_EQ(view.grid.size(), step > 2 ? k_pixels / 4 : k_pixels) << step;
     }
@@ -244,9 +244,10 @@ TEST(AlignSteps, OfNoGateLeaveThePoseAndOfAnEmptyOneGoOnToTheNext) {
   Gate some = k_projective, empty = k_projective;
   some.steps_max = 3;
   empty.steps_max = 0;
-  const ModelAlignment one = align_model(scene.views(), start_off(), gates({some}), scene.scratch);
+  const ModelAlignment one =
+      align_model(scene.views(), start_off(), settings_with_gates({some}), scene.scratch);
   const ModelAlignment two =
-      align_model(scene.views(), start_off(), gates({empty, some}), scene.scratch);
+      align_model(scene.views(), start_off(), settings_with_gates({empty, some}), scene.scratch);
   EXPECT_EQ(one.steps, two.steps);
   EXPECT_EQ(one.T_world_base.translation, two.T_world_base.translation);
   EXPECT_EQ(one.covariance, two.covariance);
@@ -273,7 +274,7 @@ TEST(AlignSteps, HaveNoCovarianceOfSixPairs) {
     }
     const std::vector<SceneView> views = scene.views();
     const ModelAlignment end =
-        align_model(std::span(views).first(1), k_truth, gates({gate}), scene.scratch);
+        align_model(std::span(views).first(1), k_truth, settings_with_gates({gate}), scene.scratch);
     if (end.reason != Reason::none) continue;  // the pairs do not determine a pose
     ++posed;
     EXPECT_EQ(end.covariance.norm() > 0, end.pairs > 6) << end.pairs;
@@ -286,7 +287,8 @@ TEST(AlignSteps, StartedAnewAreThoseOfANewRun) {
   TwoViews scene(0.004);
   const std::vector<SceneView> views = scene.views();
   AlignmentRun used, fresh;
-  used.start({Quaternion::Identity(), {0, 0, -3}}, gates({k_projective, k_projective}));
+  used.start({Quaternion::Identity(), {0, 0, -3}},
+             settings_with_gates({k_projective, k_projective}));
   while (used.step(views, scene.scratch)) {
   }
   EXPECT_EQ(used.result().reason, Reason::degenerate);
@@ -296,10 +298,10 @@ TEST(AlignSteps, StartedAnewAreThoseOfANewRun) {
   Gate more = k_projective;
   more.steps_max = 4;
   for (const int slices : {1, 2, 5}) {  // interrupted
-    used.start(start_off(), gates({more, more}));
+    used.start(start_off(), settings_with_gates({more, more}));
     for (int i = 0; i < slices; ++i) EXPECT_TRUE(used.step(views, scene.scratch));
     for (AlignmentRun* run : {&used, &fresh}) {
-      run->start(start_off(), gates({more, k_projective}));
+      run->start(start_off(), settings_with_gates({more, k_projective}));
       while (run->step(views, scene.scratch)) {
       }
     }
@@ -308,7 +310,7 @@ TEST(AlignSteps, StartedAnewAreThoseOfANewRun) {
     EXPECT_EQ(used.result().reason, Reason::none);
     EXPECT_EQ(used.result().T_world_base.translation, fresh.result().T_world_base.translation);
     EXPECT_EQ(used.result().covariance, fresh.result().covariance);
-    EXPECT_EQ(used.middle(), fresh.middle());
+    EXPECT_EQ(used.centroid(), fresh.centroid());
   }
 }
 

@@ -112,7 +112,7 @@ TEST(SearchScene, TakesTheMeasuredPixelsOfTheRaster) {
   scene.mask[0] = 0, scene.mask[7] = 0;
   for (const int step : {1, 2, 3}) {
     AlignmentScratch::View& memory = scene.scratch.views[0];
-    search_scene(scene.view(), step, 0.2, memory);
+    index_scene(scene.view(), step, 0.2, memory);
     std::size_t count = 0;
     for (int y = 0; y < 4; y += step) {
       for (int x = 0; x < 5; x += step) {
@@ -136,7 +136,7 @@ TEST(SceneIndexing, GivesTheSearchOfAllPixelsForTheStepsOfPixelsAndGrid) {
     scene.depth[static_cast<std::size_t>(i)] = i % 4 == 1 ? 0 : 1 + 0.5f * static_cast<float>(i);
   }
   AlignmentScratch::View &whole = scene.scratch.views[0], &sliced = scene.scratch.views[1];
-  search_scene(scene.view(), 1, 0.2, whole);
+  index_scene(scene.view(), 1, 0.2, whole);
   StepBudget building;
   PointGrid grid;
   ASSERT_EQ(grid.prepare(20), Reason::none);

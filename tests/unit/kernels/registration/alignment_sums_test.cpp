@@ -71,8 +71,8 @@ TEST(AlignmentSums, GiveTheMotionWithTheLeastSquares) {
     const Vector6 expected = matrix.ldlt().solve(-slope);
     const Result<AlignmentStep> step = solve(sums);
     ASSERT_EQ(step.reason, Reason::none);
-    EXPECT_LT((step.value.shift - expected.head<3>()).norm(), 1e-9 * expected.norm());
-    EXPECT_LT((step.value.turn - expected.tail<3>()).norm(), 1e-9 * expected.norm());
+    EXPECT_LT((step.value.translation - expected.head<3>()).norm(), 1e-9 * expected.norm());
+    EXPECT_LT((step.value.rotation - expected.tail<3>()).norm(), 1e-9 * expected.norm());
   }
 }
 
@@ -87,14 +87,14 @@ TEST(AlignmentSums, HaveNoMotionWhereADirectionIsOpen) {
 
 TEST(AlignmentSums, MoveAPoseByAShiftAndATurnAboutTheMiddle) {
   const Pose T{Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, -2, 3).normalized())), {0.4, -0.2, 1}};
-  const Vector3 middle(0.1, 0.3, 0.9), shift(0.01, -0.02, 0.03), turn(0.2, 0.05, -0.1);
-  const Pose end = moved(T, {shift, turn}, middle);
+  const Vector3 centroid(0.1, 0.3, 0.9), shift(0.01, -0.02, 0.03), turn(0.2, 0.05, -0.1);
+  const Pose end = moved(T, {shift, turn}, centroid);
   const Quaternion by(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
   for (const Vector3& p : {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(-0.3, 0.5, 2)}) {
-    EXPECT_LT((end * p - (by * (T * p - middle) + middle + shift)).norm(), 1e-14);
+    EXPECT_LT((end * p - (by * (T * p - centroid) + centroid + shift)).norm(), 1e-14);
   }
   EXPECT_NEAR(end.rotation.norm(), 1, 1e-15);
-  const Pose shifted = moved(T, {shift, Vector3::Zero()}, middle);
+  const Pose shifted = moved(T, {shift, Vector3::Zero()}, centroid);
   EXPECT_LT((shifted.translation - T.translation - shift).norm(), 1e-15);
   EXPECT_LT(shifted.rotation.angularDistance(T.rotation), 1e-7);
 }

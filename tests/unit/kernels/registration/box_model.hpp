@@ -10,7 +10,7 @@
 namespace glint::test {
 
 // An arm of three boxes about one corner, each of a different size.
-struct Model {
+struct BoxArm {
   std::vector<Vector3f> corners;
   std::vector<Face> faces;
 
@@ -27,7 +27,7 @@ struct Model {
       faces.push_back({first + q[0], first + q[2], first + q[3]});
     }
   }
-  Model() {
+  BoxArm() {
     add({-0.1f, -0.1f, 0}, {0.1f, 0.1f, 0.5f});
     add({-0.05f, -0.05f, 0.4f}, {0.45f, 0.06f, 0.5f});
     add({0.37f, -0.06f, 0.2f}, {0.45f, 0.06f, 0.5f});
@@ -45,7 +45,7 @@ struct SampledModel {
   std::vector<Vector3f> points, normals;
   float spacing_m;
 
-  SampledModel(const Model& model, float spacing) : spacing_m(spacing) {
+  SampledModel(const BoxArm& model, float spacing) : spacing_m(spacing) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> any(0, 1);
     const Surface surface{model.corners, model.faces};

@@ -13,11 +13,11 @@ namespace {
 using test::at;
 using test::k_truth;
 using test::k_world_pixels;
-using test::World;
+using test::TrackedArmScene;
 
 // 12 mm aside, rotated by 0.02 rad, one of 40 pixels seen through: all within the limits.
 FollowReport report_of(const FollowSettings& settings) {
-  World world;
+  TrackedArmScene world;
   world.follower.settings = settings;
   world.draw({(Quaternion(Eigen::AngleAxisd(0.02, Vector3::UnitY())) * k_truth.rotation),
               k_truth.translation + Vector3(0.012, 0, 0)});
@@ -32,7 +32,7 @@ FollowReport report_of(const FollowSettings& settings) {
 TEST(FollowLimits, DecideEachAlone) {
   const FollowReport first = report_of({});
   ASSERT_EQ(first.outcome, FollowOutcome::followed) << name_of(first.outcome);
-  const Judgement& judged = first.judgement;
+  const AlignmentScore& judged = first.judgement;
   ASSERT_GT(judged.unhidden_seen_through_share(), 0);
   ASSERT_GT(first.turn_rad, 0.01);
   const auto outcome = [](double FollowSettings::*limit, double value) {
@@ -62,23 +62,23 @@ TEST(FollowLimits, DecideEachAlone) {
 // The rotation is between both orientations; the translation is that of the visible centroid.
 TEST(FollowLimits, MeasureTheTurnAndTheShiftOfTheMiddle) {
   for (const double sign : {1.0, -1.0}) {  // q and -q are the same rotation
-    World world;
-    Vector3 middle = Vector3::Zero();
+    TrackedArmScene world;
+    Vector3 centroid = Vector3::Zero();
     world.draw(k_truth);
     int seen = 0;
     for (int i = 0; i < k_world_pixels; ++i) {
       const float z = world.depth[static_cast<std::size_t>(i)];
       if (z > 1.8f) continue;
-      middle += pixel_point(world.camera, i % 160, i / 160, z).cast<double>();
+      centroid += pixel_point(world.camera, i % 160, i / 160, z).cast<double>();
       ++seen;
     }
-    middle /= seen;
+    centroid /= seen;
     Quaternion start = k_truth.rotation;
     start.coeffs() *= sign;
     world.follower.begin({start, k_truth.translation}, Matrix6::Identity() * 1e-6, at(0));
     const Quaternion turn(Eigen::AngleAxisd(0.025, Vector3::UnitZ()));
     const Pose truth{(turn * k_truth.rotation).normalized(),
-                     middle + turn * (k_truth.translation - middle)};
+                     centroid + turn * (k_truth.translation - centroid)};
     world.draw(truth);
     world.look(at(1));
     const FollowReport& report = world.follower.report();
@@ -93,7 +93,7 @@ TEST(FollowLimits, MeasureTheTurnAndTheShiftOfTheMiddle) {
 // By the fraction 1 - exp(-dt / time constant) of the rotation; the covariance likewise.
 TEST(FollowReference, GoesThatPartOfTurnAndCovarianceToo) {
   for (const double seconds : {0.3, 2.0, 1e4}) {
-    World world;
+    TrackedArmScene world;
     const FollowedReference before = world.follower.reference(at(0));
     world.draw({(Quaternion(Eigen::AngleAxisd(0.02, Vector3::UnitY())) * k_truth.rotation),
                 k_truth.translation + Vector3(0.01, 0, 0)});
@@ -118,7 +118,7 @@ TEST(FollowReference, GoesThatPartOfTurnAndCovarianceToo) {
 }
 
 TEST(FollowReference, StatesWhatTheDeclaredDriftMayHaveDone) {
-  World world;
+  TrackedArmScene world;
   world.follower.settings.time_constant_s = 1.5;
   world.follower.settings.drift_m_s = 2e-3;
   world.follower.settings.drift_rad_s = 3e-3;
@@ -140,7 +140,7 @@ TEST(FollowReference, StatesWhatTheDeclaredDriftMayHaveDone) {
 }
 
 TEST(FollowReference, BegunAnewOrPreparedAnewHasNothingOfTheLastReference) {
-  World world;
+  TrackedArmScene world;
   world.draw({k_truth.rotation, k_truth.translation + Vector3(0.03, 0, 0)});
   world.look(at(1));
   world.look(at(2));
@@ -167,7 +167,7 @@ TEST(FollowReference, BegunAnewOrPreparedAnewHasNothingOfTheLastReference) {
 
 TEST(FollowReference, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
   const auto reason_of = [](double FollowSettings::*setting, double value) {
-    ReferenceFollower follower;
+    RobotPoseTracker follower;
     follower.settings.*setting = value;
     return follower.prepare(100, 8);
   };
@@ -186,7 +186,7 @@ TEST(FollowReference, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
       EXPECT_EQ(reason_of(setting, wrong), Reason::out_of_range) << wrong;
     }
   }
-  ReferenceFollower follower;
+  RobotPoseTracker follower;
   EXPECT_EQ(follower.prepare(1, 1), Reason::none);
   EXPECT_EQ(follower.prepare(0, 8), Reason::out_of_range);
   EXPECT_EQ(follower.prepare(100, 0), Reason::out_of_range);
@@ -194,7 +194,7 @@ TEST(FollowReference, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
 }
 
 TEST(FollowReference, TakesStepsForEachCallAndNoneWithoutAPicture) {
-  World world;
+  TrackedArmScene world;
   EXPECT_EQ(world.follower.step(1), 0);
   world.draw(k_truth);
   for (const int steps : {1, 0, -5}) {
@@ -209,7 +209,7 @@ TEST(FollowReference, TakesStepsForEachCallAndNoneWithoutAPicture) {
 
 // Until its steps are used up or the image is complete.
 TEST(FollowReference, GoesOnUntilItsStepsAreUsedUp) {
-  World world;
+  TrackedArmScene world;
   world.draw(k_truth);
   for (const int steps : {5'000, 100'000, 1 << 29}) {
     ASSERT_TRUE(world.follower.look(world.view(), at(1 + 1e-9 * steps)));

@@ -11,7 +11,7 @@ namespace {
 using test::at;
 using test::k_truth;
 using test::k_world_pixels;
-using test::World;
+using test::TrackedArmScene;
 
 Vector6 error_of(const Pose& found, const Pose& truth) {
   Vector6 error;
@@ -21,7 +21,7 @@ Vector6 error_of(const Pose& found, const Pose& truth) {
 }
 
 TEST(FollowReference, FollowsADriftWithinItsCovariance) {
-  World world;
+  TrackedArmScene world;
   double squares = 0, worst_mm = 0;
   int judged = 0;
   for (int i = 1; i <= 40; ++i) {
@@ -46,7 +46,7 @@ TEST(FollowReference, FollowsADriftWithinItsCovariance) {
 }
 
 TEST(FollowReference, GoesAPartOfTheWayByItsTimeConstant) {
-  World world;
+  TrackedArmScene world;
   const Pose truth{k_truth.rotation, k_truth.translation + Vector3(0.01, 0, 0)};
   world.draw(truth);
   world.look(at(world.follower.settings.time_constant_s));
@@ -58,7 +58,7 @@ TEST(FollowReference, GoesAPartOfTheWayByItsTimeConstant) {
 }
 
 TEST(FollowReference, RefusesAJumpAndTellsIt) {
-  World world;
+  TrackedArmScene world;
   world.draw({k_truth.rotation, k_truth.translation + Vector3(0.03, 0, 0)});
   for (int i = 1; i <= 3; ++i) {
     world.look(at(i));
@@ -82,7 +82,7 @@ TEST(FollowReference, RefusesAJumpAndTellsIt) {
 }
 
 TEST(FollowReference, LeavesAHiddenRobotAloneAndKnowsLessOfItAsTimePasses) {
-  World world;
+  TrackedArmScene world;
   const FollowedReference before = world.follower.reference(at(1));
   std::fill(world.depth.begin(), world.depth.end(), 0.5f);
   world.look(at(5));
@@ -101,7 +101,7 @@ TEST(FollowReference, LeavesAHiddenRobotAloneAndKnowsLessOfItAsTimePasses) {
 }
 
 TEST(FollowReference, IsNotTakenInByARobotThatIsGone) {
-  World world;
+  TrackedArmScene world;
   std::fill(world.depth.begin(), world.depth.end(), 1.9f);
   world.look(at(1));
   EXPECT_NE(world.follower.report().outcome, FollowOutcome::followed);
@@ -111,7 +111,7 @@ TEST(FollowReference, IsNotTakenInByARobotThatIsGone) {
 // The limit is 3 sqrt(trace) of the position's, or the rotation's, covariance.
 TEST(FollowReference, IsUnsureWhereAJumpCouldBeNoise) {
   const auto outcome = [](double jump_m, double jump_rad, Matrix6& covariance) {
-    World world;
+    TrackedArmScene world;
     world.draw(k_truth);
     if (jump_m > 0) world.follower.settings.jump_m = jump_m;
     if (jump_rad > 0) world.follower.settings.jump_rad = jump_rad;
@@ -131,12 +131,12 @@ TEST(FollowReference, IsUnsureWhereAJumpCouldBeNoise) {
 }
 
 TEST(FollowReference, WantsAReferenceAndNewerPictures) {
-  World world;
+  TrackedArmScene world;
   world.draw(k_truth);
   world.look(at(2));
   EXPECT_EQ(world.look(at(2)), 0);
   EXPECT_EQ(world.follower.report().outcome, FollowOutcome::late);
-  ReferenceFollower none;
+  RobotPoseTracker none;
   EXPECT_EQ(none.prepare(0, 64), Reason::out_of_range);
   ASSERT_EQ(none.prepare(k_world_pixels, 64), Reason::none);
   EXPECT_FALSE(none.look(world.view(), at(1)));
@@ -147,7 +147,7 @@ TEST(FollowReference, WantsAReferenceAndNewerPictures) {
 }
 
 TEST(FollowReference, LeavesAPictureUnfinishedWhenANewReferenceComes) {
-  World world;
+  TrackedArmScene world;
   world.draw({k_truth.rotation, k_truth.translation + Vector3(0.004, 0, 0)});
   ASSERT_TRUE(world.follower.look(world.view(), at(1)));
   ASSERT_TRUE(world.follower.step());
@@ -158,8 +158,8 @@ TEST(FollowReference, LeavesAPictureUnfinishedWhenANewReferenceComes) {
 }
 
 TEST(FollowReference, TakesNoMoreSlicesThanItSaysAndNoHeap) {
-  World world;
-  world.follower.settings.alignment.rest_shift_m = 0;  // never converges
+  TrackedArmScene world;
+  world.follower.settings.alignment.convergence_translation_m = 0;  // never converges
   world.draw({k_truth.rotation, k_truth.translation + Vector3(0.004, 0, 0)});
   EXPECT_EQ(world.look(at(1)), world.follower.slices_max());
   const HeapCount heap;

@@ -8,24 +8,24 @@
 namespace glint::follow_slices_test {
 namespace {
 
+using test::BoxArm;
 using test::k_truth;
-using test::Model;
 using test::SampledModel;
 
 constexpr int k_pixels = 160 * 120;
 
 struct PointWorld {
-  Model model;
+  BoxArm model;
   SampledModel sampled{model, 0.004f};
   Pinhole camera{160, 120, 150, 150, 80, 60};
   std::vector<float> depth = std::vector<float>(k_pixels);
   std::mt19937 random{5};
-  ReferenceFollower whole, sliced;
+  RobotPoseTracker whole, sliced;
   int slices = 0;
 
   PointWorld() {
     Matrix6 covariance = Matrix6::Identity() * 1e-6;
-    for (ReferenceFollower* follower : {&whole, &sliced}) {
+    for (RobotPoseTracker* follower : {&whole, &sliced}) {
       EXPECT_EQ(follower->prepare(k_pixels, 100'000), Reason::none);
       follower->begin(k_truth, covariance, Time{});
     }

@@ -15,14 +15,14 @@ inline constexpr int k_world_pixels = 160 * 120;
 
 inline Time at(double seconds) { return {static_cast<std::int64_t>(seconds * 1e9)}; }
 
-struct World {
-  Model model;
+struct TrackedArmScene {
+  BoxArm model;
   Pinhole camera{160, 120, 150, 150, 80, 60};
   std::vector<float> depth = std::vector<float>(k_world_pixels);
   std::mt19937 random{3};
-  ReferenceFollower follower;
+  RobotPoseTracker follower;
 
-  World() {
+  TrackedArmScene() {
     EXPECT_EQ(follower.prepare(k_world_pixels, 64), Reason::none);
     Matrix6 covariance = Matrix6::Zero();
     covariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6;

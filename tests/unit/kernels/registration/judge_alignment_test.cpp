@@ -25,7 +25,7 @@ struct Square {
   std::vector<Face> faces = {{0, 1, 2}, {0, 2, 3}};
   std::vector<float> depth = std::vector<float>(k_pixels, 3.0f);
   std::vector<std::uint8_t> mask;
-  JudgeSettings settings{0.02, 0.25};
+  ScoreSettings settings{0.02, 0.25};
   AlignmentScratch scratch;
   int set = 0;  // number of model pixels assigned
 
@@ -41,10 +41,10 @@ struct Square {
     }
   }
   [[nodiscard]] SceneView view() const { return {camera, depth, mask, {corners, faces}, {}}; }
-  [[nodiscard]] Judgement judged() {
+  [[nodiscard]] AlignmentScore judged() {
     EXPECT_EQ(set, k_on_model);
     const SceneView one[] = {view()};
-    return judge_alignment(one, {}, settings, scratch);
+    return score_alignment(one, {}, settings, scratch);
   }
 };
 
@@ -58,21 +58,21 @@ TEST(JudgeAlignment, CountsEachKindOfPixelUpToItsLimit) {
   scene.next(1, 1.03f);   // near, but not an inlier
   scene.next(2, 1.015f);  // an inlier
   scene.next(24, 1);
-  const Judgement judged = scene.judged();
+  const AlignmentScore judged = scene.judged();
   EXPECT_EQ(judged.reason, Reason::none);
   EXPECT_EQ(judged.rendered, 48);
   EXPECT_EQ(judged.measured, 43);
-  EXPECT_EQ(judged.hidden, 7);
-  EXPECT_EQ(judged.seen_through, 4);
+  EXPECT_EQ(judged.occluded, 7);
+  EXPECT_EQ(judged.free_space_violations, 4);
   EXPECT_EQ(judged.inliers, 26);
   EXPECT_EQ(judged.mask_pixels, 0);
   EXPECT_EQ(judged.mask_covered, 0);
   EXPECT_NEAR(judged.median_m, k_distance_step_m / 2, 1e-12);
   const AlignmentScratch::View& memory = scene.scratch.views[0];
   const OutlineCounts outline =
-      look_beside_outline(scene.view(), memory.z, memory.triangle, scene.settings.far_m);
+      count_outline(scene.view(), memory.z, memory.triangle, scene.settings.far_m);
   EXPECT_EQ(judged.outline.falls, outline.falls);
-  EXPECT_EQ(judged.outline.goes_on, outline.goes_on);
+  EXPECT_EQ(judged.outline.continues, outline.continues);
   EXPECT_GT(judged.outline.falls, 0);
 }
 
@@ -89,10 +89,10 @@ TEST(JudgeAlignment, CountsByTheMaskWhatIsNotTheModel) {
   scene.next(3, 0.99f, 1);
   scene.next(2, 0, 1);
   scene.next(28, 1, 1);
-  const Judgement judged = scene.judged();
+  const AlignmentScore judged = scene.judged();
   EXPECT_EQ(judged.measured, 46);
-  EXPECT_EQ(judged.hidden, 6);
-  EXPECT_EQ(judged.seen_through, 4);
+  EXPECT_EQ(judged.occluded, 6);
+  EXPECT_EQ(judged.free_space_violations, 4);
   EXPECT_EQ(judged.inliers, 31);
   EXPECT_EQ(judged.mask_pixels, 5 + 31);
   EXPECT_EQ(judged.mask_covered, 31);
@@ -103,18 +103,18 @@ TEST(JudgeAlignment, AddsUpOverViews) {
   scene.next(10, 1.3f);
   scene.next(8, 0.5f);
   scene.next(30, 1);
-  const Judgement one = scene.judged();
+  const AlignmentScore one = scene.judged();
   const SceneView twice[] = {scene.view(), scene.view()};
-  const Judgement two = judge_alignment(twice, {}, scene.settings, scene.scratch);
+  const AlignmentScore two = score_alignment(twice, {}, scene.settings, scene.scratch);
   EXPECT_EQ(two.rendered, 2 * one.rendered);
   EXPECT_EQ(two.measured, 2 * one.measured);
-  EXPECT_EQ(two.hidden, 2 * one.hidden);
-  EXPECT_EQ(two.seen_through, 2 * one.seen_through);
+  EXPECT_EQ(two.occluded, 2 * one.occluded);
+  EXPECT_EQ(two.free_space_violations, 2 * one.free_space_violations);
   EXPECT_EQ(two.inliers, 2 * one.inliers);
   EXPECT_EQ(two.outline.falls, 2 * one.outline.falls);
   EXPECT_EQ(two.median_m, one.median_m);
   const SceneView thrice[] = {twice[0], twice[0], twice[0]};
-  EXPECT_EQ(judge_alignment(thrice, {}, scene.settings, scene.scratch).reason,
+  EXPECT_EQ(score_alignment(thrice, {}, scene.settings, scene.scratch).reason,
             Reason::not_prepared);
 }
 
@@ -155,10 +155,10 @@ TEST(JudgeAlignment, TakesTheStepsOfItsPixelsInSlicesOfAnySize) {
   constexpr int k_slots = 512;  // of a grid for 192 points
   const int expected = k_pixels * (k_scene_pixel_steps + k_outline_pixel_steps) +
                        k_slots * (k_grid_clear_steps + k_grid_sum_steps) +
-                       k_on_model * k_judged_steps;
+                       k_on_model * k_score_steps;
   const SceneView twice[] = {one[0], one[0]};  // a second view, which later runs must not use
-  EXPECT_EQ(judge_alignment(twice, {}, scene.settings, scene.scratch).rendered, 2 * k_on_model);
-  JudgeRun run;
+  EXPECT_EQ(score_alignment(twice, {}, scene.settings, scene.scratch).rendered, 2 * k_on_model);
+  AlignmentScoring run;
   for (const int budget : {1, 100, SliceSize::k_steps_max}) {
     for (const float depth : {0.0f, -1.0f}) {  // not measured: no search
       scene.depth.assign(k_pixels, depth);
@@ -168,7 +168,7 @@ TEST(JudgeAlignment, TakesTheStepsOfItsPixelsInSlicesOfAnySize) {
         StepBudget left(budget);
         done = run.step(one, left, scene.scratch);
         steps += budget - left.left();
-        ASSERT_LE(budget - left.left(), budget + k_judged_steps + k_outline_pixel_steps);
+        ASSERT_LE(budget - left.left(), budget + k_score_steps + k_outline_pixel_steps);
       }
       EXPECT_EQ(steps, expected) << budget;
       EXPECT_EQ(run.result().rendered, k_on_model);
@@ -185,7 +185,7 @@ TEST(JudgeAlignment, TakesTheStepsOfItsSearches) {
   Square scene;
   scene.next(k_on_model, 1);
   const SceneView one[] = {scene.view()};
-  Judgement judged = scene.judged();
+  AlignmentScore judged = scene.judged();
   ASSERT_EQ(judged.inliers, k_on_model);
   const AlignmentScratch::View& memory = scene.scratch.views[0];
   StepBudget searches;
@@ -194,7 +194,7 @@ TEST(JudgeAlignment, TakesTheStepsOfItsSearches) {
                               static_cast<float>(k_distance_steps * k_distance_step_m), searches);
   }
   const auto steps_of = [&] {
-    JudgeRun run;
+    AlignmentScoring run;
     run.start({}, scene.settings);
     StepBudget budget;
     while (!run.step(one, budget, scene.scratch)) {
@@ -204,26 +204,26 @@ TEST(JudgeAlignment, TakesTheStepsOfItsSearches) {
   const int found = steps_of();
   scene.faces.clear();  // no model to evaluate
   const SceneView empty[] = {scene.view()};
-  JudgeRun run;
+  AlignmentScoring run;
   run.start({}, scene.settings);
   StepBudget budget;
   while (!run.step(empty, budget, scene.scratch)) {
   }
   EXPECT_EQ(budget.left() - found,
-            k_on_model * k_judged_steps + SliceSize::k_steps_max - searches.left());
+            k_on_model * k_score_steps + SliceSize::k_steps_max - searches.left());
 }
 
 TEST(Judgement, HasTheSharesOfItsCounts) {
-  Judgement j;
+  AlignmentScore j;
   EXPECT_EQ(j.inlier_share(), 0);
   EXPECT_EQ(j.seen_through_share(), 0);
   EXPECT_EQ(j.unhidden_seen_through_share(), 0);
   EXPECT_EQ(j.mask_share(), 0);
   EXPECT_EQ(j.visible_share(), 0);
   EXPECT_EQ(j.outline_share(), 1);
-  j.rendered = 100, j.measured = 50, j.hidden = 10, j.inliers = 30, j.seen_through = 5;
+  j.rendered = 100, j.measured = 50, j.occluded = 10, j.inliers = 30, j.free_space_violations = 5;
   j.mask_pixels = 8, j.mask_covered = 6;
-  j.outline.falls = 10, j.outline.goes_on = 30;
+  j.outline.falls = 10, j.outline.continues = 30;
   EXPECT_DOUBLE_EQ(j.inlier_share(), 0.75);
   EXPECT_DOUBLE_EQ(j.seen_through_share(), 0.1);
   EXPECT_DOUBLE_EQ(j.unhidden_seen_through_share(), 0.125);
@@ -231,16 +231,16 @@ TEST(Judgement, HasTheSharesOfItsCounts) {
   EXPECT_DOUBLE_EQ(j.visible_share(), 0.4);
   EXPECT_DOUBLE_EQ(j.outline_share(), 0.5);
   // All measured pixels are hidden; then all but one.
-  j.hidden = 50;
+  j.occluded = 50;
   EXPECT_EQ(j.inlier_share(), 0);
   EXPECT_EQ(j.unhidden_seen_through_share(), 0);
   EXPECT_EQ(j.visible_share(), 0);
-  j.hidden = 49;
+  j.occluded = 49;
   EXPECT_EQ(j.inlier_share(), 30);
   EXPECT_EQ(j.unhidden_seen_through_share(), 5);
   EXPECT_DOUBLE_EQ(j.visible_share(), 0.01);
   j = {};
-  j.rendered = j.measured = j.seen_through = j.mask_pixels = j.mask_covered = 1;
+  j.rendered = j.measured = j.free_space_violations = j.mask_pixels = j.mask_covered = 1;
   EXPECT_EQ(j.visible_share(), 1);
   EXPECT_EQ(j.seen_through_share(), 1);
   EXPECT_EQ(j.mask_share(), 1);
@@ -256,18 +256,18 @@ TEST(JudgeLinks, CountsTheSameKindsByLink) {
   scene.next(2, 1.25f);
   scene.next(1, 1.03f);
   scene.next(26, 1);
-  const Judgement judged = scene.judged();
+  const AlignmentScore judged = scene.judged();
   const SceneView one[] = {scene.view()};
   const std::vector<std::uint16_t> numbers = {3, 1};
   const std::span<const std::uint16_t> links[] = {numbers};
-  const LinkJudgement found = judge_links(one, links, {}, scene.settings, scene.scratch);
+  const LinkScores found = score_links(one, links, {}, scene.settings, scene.scratch);
   ASSERT_EQ(found.reason, Reason::none);
   const LinkCounts &a = found.links[3], &b = found.links[1];
   EXPECT_GT(a.looked_at, 10);
   EXPECT_GT(b.looked_at, 10);
-  EXPECT_EQ(a.looked_at + b.looked_at, judged.measured - judged.hidden);
+  EXPECT_EQ(a.looked_at + b.looked_at, judged.measured - judged.occluded);
   EXPECT_EQ(a.explained + b.explained, judged.inliers);
-  EXPECT_EQ(a.seen_through + b.seen_through, judged.seen_through);
+  EXPECT_EQ(a.free_space_violations + b.free_space_violations, judged.free_space_violations);
   // Reference: counts of the first face's pixels.
   LinkCounts upper;
   for (int i = 0; i < k_on_model; ++i) {
@@ -277,19 +277,19 @@ TEST(JudgeLinks, CountsTheSameKindsByLink) {
     if (depth == 0 || depth == 0.7f) continue;
     ++upper.looked_at;
     upper.explained += depth == 1 ? 1 : 0;
-    upper.seen_through += depth == 1.3f ? 1 : 0;
+    upper.free_space_violations += depth == 1.3f ? 1 : 0;
   }
   EXPECT_EQ(a.looked_at, upper.looked_at);
   EXPECT_EQ(a.explained, upper.explained);
-  EXPECT_EQ(a.seen_through, upper.seen_through);
+  EXPECT_EQ(a.free_space_violations, upper.free_space_violations);
   // A face without a link number adds nothing, nor does a number that is not a link's.
   const std::span<const std::uint16_t> first[] = {std::span(numbers).first(1)};
-  const LinkJudgement fewer = judge_links(one, first, {}, scene.settings, scene.scratch);
+  const LinkScores fewer = score_links(one, first, {}, scene.settings, scene.scratch);
   EXPECT_EQ(fewer.links[3].looked_at, a.looked_at);
   EXPECT_EQ(fewer.links[1].looked_at, 0);
   const std::vector<std::uint16_t> last = {k_robot_links_max - 1, k_robot_links_max};
   const std::span<const std::uint16_t> of_last[] = {last};
-  const LinkJudgement at_end = judge_links(one, of_last, {}, scene.settings, scene.scratch);
+  const LinkScores at_end = score_links(one, of_last, {}, scene.settings, scene.scratch);
   EXPECT_EQ(at_end.links[k_robot_links_max - 1].looked_at, a.looked_at);
 }
 
@@ -302,10 +302,10 @@ TEST(JudgeLinks, LeavesOutWhatTheMaskExcludesInFrontAlone) {
   const SceneView one[] = {scene.view()};
   const std::vector<std::uint16_t> numbers = {0, 0};
   const std::span<const std::uint16_t> links[] = {numbers};
-  const LinkJudgement found = judge_links(one, links, {}, scene.settings, scene.scratch);
+  const LinkScores found = score_links(one, links, {}, scene.settings, scene.scratch);
   EXPECT_EQ(found.links[0].looked_at, 42);
   EXPECT_EQ(found.links[0].explained, 37);
-  EXPECT_EQ(found.links[0].seen_through, 0);
+  EXPECT_EQ(found.links[0].free_space_violations, 0);
 }
 
 TEST(JudgeLinks, AddsUpOverTheViewsThatHaveNumbers) {
@@ -314,14 +314,14 @@ TEST(JudgeLinks, AddsUpOverTheViewsThatHaveNumbers) {
   const SceneView two[] = {scene.view(), scene.view()};
   const std::vector<std::uint16_t> numbers = {0, 0}, others = {1, 1};
   const std::span<const std::uint16_t> both[] = {numbers, others}, second[] = {{}, others};
-  const LinkJudgement found = judge_links(two, both, {}, scene.settings, scene.scratch);
+  const LinkScores found = score_links(two, both, {}, scene.settings, scene.scratch);
   EXPECT_EQ(found.links[0].explained, k_on_model);
   EXPECT_EQ(found.links[1].explained, k_on_model);
-  const LinkJudgement one = judge_links(two, second, {}, scene.settings, scene.scratch);
+  const LinkScores one = score_links(two, second, {}, scene.settings, scene.scratch);
   EXPECT_EQ(one.links[0].looked_at, 0);
   EXPECT_EQ(one.links[1].looked_at, k_on_model);
-  const LinkJudgement first =
-      judge_links(two, std::span(both).first(1), {}, scene.settings, scene.scratch);
+  const LinkScores first =
+      score_links(two, std::span(both).first(1), {}, scene.settings, scene.scratch);
   EXPECT_EQ(first.links[0].looked_at, k_on_model);
   EXPECT_EQ(first.links[1].looked_at, 0);
 }

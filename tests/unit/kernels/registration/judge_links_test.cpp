@@ -12,7 +12,7 @@ using test::k_truth;
 
 // The arm of three boxes in front of a wall; each box is a link.
 struct ArmScene {
-  test::Model model;
+  test::BoxArm model;
   Pinhole camera{320, 240, 300, 300, 160, 120};
   std::vector<float> depth = std::vector<float>(320 * 240);
   std::vector<std::int32_t> face = std::vector<std::int32_t>(320 * 240);
@@ -29,10 +29,10 @@ struct ArmScene {
       numbers.push_back(static_cast<std::uint16_t>(f / 12));
     }
   }
-  [[nodiscard]] LinkJudgement judged(const std::vector<std::uint8_t>& mask = {}) {
+  [[nodiscard]] LinkScores judged(const std::vector<std::uint8_t>& mask = {}) {
     const SceneView view{camera, depth, mask, {model.corners, model.faces}, {}};
     const std::span<const std::uint16_t> links(numbers);
-    return judge_links({&view, 1}, {&links, 1}, k_truth, {}, scratch);
+    return score_links({&view, 1}, {&links, 1}, k_truth, {}, scratch);
   }
   // Offsets the depth of link 2's pixels.
   void move_hand(float by_m) {
@@ -44,12 +44,12 @@ struct ArmScene {
 
 TEST(JudgeLinks, ExplainsEveryLinkOfARobotThatIsThere) {
   ArmScene scene;
-  const LinkJudgement found = scene.judged();
+  const LinkScores found = scene.judged();
   ASSERT_EQ(found.reason, Reason::none);
   for (std::size_t l = 0; l < 3; ++l) {
     EXPECT_GT(found.links[l].looked_at, 200) << l;
     EXPECT_EQ(found.links[l].explained, found.links[l].looked_at) << l;
-    EXPECT_EQ(found.links[l].seen_through, 0) << l;
+    EXPECT_EQ(found.links[l].free_space_violations, 0) << l;
   }
   EXPECT_EQ(found.links[3].looked_at, 0);
 }
@@ -57,16 +57,16 @@ TEST(JudgeLinks, ExplainsEveryLinkOfARobotThatIsThere) {
 TEST(JudgeLinks, CountsALinkThatIsElsewhereByItself) {
   ArmScene scene;
   scene.move_hand(0.3f);
-  const LinkJudgement found = scene.judged();
+  const LinkScores found = scene.judged();
   EXPECT_EQ(found.links[0].explained, found.links[0].looked_at);
-  EXPECT_EQ(found.links[2].seen_through, found.links[2].looked_at);
+  EXPECT_EQ(found.links[2].free_space_violations, found.links[2].looked_at);
   EXPECT_LT(found.links[2].explained, found.links[2].looked_at / 4);
 }
 
 TEST(JudgeLinks, LeavesOutWhatIsHidden) {
   ArmScene scene;
   scene.move_hand(-0.3f);
-  const LinkJudgement found = scene.judged();
+  const LinkScores found = scene.judged();
   EXPECT_EQ(found.links[2].looked_at, 0);
   EXPECT_GT(found.links[1].looked_at, 200);
 }
@@ -74,7 +74,7 @@ TEST(JudgeLinks, LeavesOutWhatIsHidden) {
 TEST(JudgeLinks, AddsNothingWithoutNumbers) {
   ArmScene scene;
   scene.numbers.clear();
-  const LinkJudgement found = scene.judged();
+  const LinkScores found = scene.judged();
   EXPECT_EQ(found.reason, Reason::none);
   for (const LinkCounts& link : found.links) EXPECT_EQ(link.looked_at, 0);
   scene.numbers.assign(36, k_robot_links_max);

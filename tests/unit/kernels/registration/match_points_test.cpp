@@ -22,7 +22,7 @@ struct Scene {
   double gate_m = 0.25;
   Pose T_moved;
   Quaternion turn = Quaternion::Identity();
-  Vector3 middle = Vector3::Zero();
+  Vector3 centroid = Vector3::Zero();
 
   explicit Scene(float depth_m, const std::vector<Vector3f>& of_points = {})
       : depth(k_width * k_height, depth_m), points(of_points) {
@@ -31,10 +31,10 @@ struct Scene {
   }
   [[nodiscard]] AlignmentSums pairs(Matching matching, const Vector3f& point,
                                     const Vector3f& normal) const {
-    const SeenPoint seen{point, normal, 0};
+    const VisiblePoint seen{point, normal, 0};
     AlignmentSums sums;
     add_pairs({&seen, 1}, T_moved, matching, gate_m, {camera, depth, mask, {}, {}}, {&grid, points},
-              turn, middle, sums);
+              turn, centroid, sums);
     return sums;
   }
   [[nodiscard]] int count(Matching matching, const Vector3f& point,
@@ -46,16 +46,16 @@ struct Scene {
 // Translation and rotation of a small motion, in the frame of the sums.
 const Vector3 k_shift(1e-6, -2e-6, 3e-6), k_turn(4e-6, 1e-6, -2e-6);
 
-// A point of the camera's frame after that motion about the scene's `middle`.
+// A point of the camera's frame after that motion about the scene's `centroid`.
 Vector3 moved_point(const Scene& scene, const Vector3& p) {
   const Vector3 shift = scene.turn.conjugate() * k_shift, turn = scene.turn.conjugate() * k_turn;
-  return p + shift + turn.cross(p - scene.middle);
+  return p + shift + turn.cross(p - scene.centroid);
 }
 
 Scene tilted_frame(float depth_m, const std::vector<Vector3f>& points = {}) {
   Scene scene(depth_m, points);
   scene.turn = Quaternion(Eigen::AngleAxisd(0.8, Vector3(1, 2, -1).normalized()));
-  scene.middle = Vector3(0.2, -0.1, 1.7);
+  scene.centroid = Vector3(0.2, -0.1, 1.7);
   return scene;
 }
 
@@ -147,7 +147,7 @@ TEST(MatchPoints, ProjectivePairsAreAtMostTheGateApart) {
 TEST(MatchPoints, ProjectivePairsNeedASurfaceThatFacesTheCamera) {
   const Scene scene(2.0f);
   const Vector3f ahead(0, 0, 2);
-  const auto least = static_cast<float>(k_least_cosine);
+  const auto least = static_cast<float>(k_cosine_min);
   EXPECT_EQ(scene.count(Matching::projective, ahead, {0.98f, 0, -least}), 1);
   EXPECT_EQ(scene.count(Matching::projective, ahead, {0.98f, 0, -0.1999f}), 0);
   EXPECT_EQ(scene.count(Matching::projective, ahead, {0, 0, 1}), 0);

@@ -27,7 +27,7 @@ const double k_gate_m = AlignmentSettings{}.gates[4].gate_m;
 
 // The arm of boxes without background; blocks of `block` x `block` pixels share a depth error.
 struct NoisyScene {
-  test::Model model;
+  test::BoxArm model;
   Pinhole camera{k_width, k_height, 300, 300, 160, 120};
   std::vector<float> depth = std::vector<float>(k_width * k_height);
   AlignmentScratch scratch;
@@ -66,14 +66,15 @@ Consistency consistency(int block) {
     const SceneView one[] = {scene.view()};
     const ModelAlignment end = align_model(one, k_truth, {}, scene.scratch);
     EXPECT_EQ(end.reason, Reason::none);
-    const Result<Matrix6> honest = patch_covariance(one, end.T_world_base, k_gate_m, scene.scratch);
-    EXPECT_EQ(honest.reason, Reason::none);
+    const Result<Matrix6> clustered =
+        patch_covariance(one, end.T_world_base, k_gate_m, scene.scratch);
+    EXPECT_EQ(clustered.reason, Reason::none);
     const Quaternion turn = end.T_world_base.rotation * k_truth.rotation.conjugate();
     Vector6 off;
     off << end.T_world_base.translation - k_truth.translation,
         2 * turn.vec() * (turn.w() < 0 ? -1 : 1);
     mean.independent += off.dot(end.covariance.inverse() * off) / 6 / scenes;
-    mean.patches += off.dot(honest.value.inverse() * off) / 6 / scenes;
+    mean.patches += off.dot(clustered.value.inverse() * off) / 6 / scenes;
   }
   return mean;
 }
@@ -102,8 +103,8 @@ Matrix6 plain_patch_covariance(std::span<const SceneView> views, const Pose& T_w
     const Vector3 origin = views[v].T_camera_world * T_world_base.translation;
     std::map<std::pair<int, int>, Vector6> patches;
     const AlignmentScratch::View& view = scratch.views[v];
-    for (int i = 0; i < view.seen_count; ++i) {
-      const SeenPoint& point = view.seen[static_cast<std::size_t>(i)];
+    for (int i = 0; i < view.visible_count; ++i) {
+      const VisiblePoint& point = view.seen[static_cast<std::size_t>(i)];
       AlignmentSums pair;
       add_pairs({&point, 1}, Pose{}, Matching::projective, k_gate_m, views[v], {},
                 views[v].T_camera_world.inverse().rotation, origin, pair);
@@ -152,15 +153,15 @@ TEST(PatchCovariance, NeedsAsManyPatchesAsDeclared) {
     return std::pair(pixel % k_width / k_patch_pixels, pixel / k_width / k_patch_pixels);
   };
   std::set<std::pair<int, int>> with_pairs;
-  for (int i = 0; i < memory.seen_count; ++i) {
-    const SeenPoint& point = memory.seen[static_cast<std::size_t>(i)];
+  for (int i = 0; i < memory.visible_count; ++i) {
+    const VisiblePoint& point = memory.seen[static_cast<std::size_t>(i)];
     AlignmentSums pair;
     add_pairs({&point, 1}, Pose{}, Matching::projective, k_gate_m, one[0], {},
               Quaternion::Identity(), k_truth.translation, pair);
     if (pair.count > 0) with_pairs.insert(patch_of(point.pixel));
   }
-  ASSERT_GT(with_pairs.size(), static_cast<std::size_t>(k_patches_least));
-  for (const int count : {k_patches_least - 1, k_patches_least}) {
+  ASSERT_GT(with_pairs.size(), static_cast<std::size_t>(k_patches_min));
+  for (const int count : {k_patches_min - 1, k_patches_min}) {
     const std::set<std::pair<int, int>> shown(with_pairs.begin(),
                                               std::next(with_pairs.begin(), count));
     std::vector<std::uint8_t> mask;
@@ -169,7 +170,7 @@ TEST(PatchCovariance, NeedsAsManyPatchesAsDeclared) {
     SceneView few[] = {scene.view()};
     few[0].mask = mask;
     EXPECT_EQ(patch_covariance(few, k_truth, k_gate_m, scene.scratch).reason,
-              count < k_patches_least ? Reason::degenerate : Reason::none);
+              count < k_patches_min ? Reason::degenerate : Reason::none);
   }
 }
 

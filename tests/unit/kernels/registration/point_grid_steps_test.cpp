@@ -15,10 +15,10 @@ namespace {
 
 constexpr float k_reach = 0.125f, k_cell = k_reach / 2;
 
-// Capacity for `room` points; a larger table has fewer hash collisions.
+// Capacity for `capacity` points; a larger table has fewer hash collisions.
 struct TestGrid {
   PointGrid grid;
-  explicit TestGrid(int room) { EXPECT_EQ(grid.prepare(room), Reason::none); }
+  explicit TestGrid(int capacity) { EXPECT_EQ(grid.prepare(capacity), Reason::none); }
   // Returns the steps of each call.
   std::vector<int> build(const std::vector<Vector3f>& points, int budget) {
     EXPECT_EQ(grid.begin_build(points, static_cast<double>(k_reach)), Reason::none);
@@ -50,18 +50,18 @@ Vector3f middle_of(int x, int y, int z) {
 }
 
 TEST(PointGridSteps, OfBuildingAreThoseOfItsSlotsAndPointsInSlicesOfAnySize) {
-  for (const int room : {1, 7, 8, 9, 1'000}) {
-    TestGrid test(room);
-    const std::vector<Vector3f> points(static_cast<std::size_t>(room), Vector3f(1, 1, 1));
-    const int slots = static_cast<int>(std::bit_ceil(2 * static_cast<unsigned>(room)));
+  for (const int capacity : {1, 7, 8, 9, 1'000}) {
+    TestGrid test(capacity);
+    const std::vector<Vector3f> points(static_cast<std::size_t>(capacity), Vector3f(1, 1, 1));
+    const int slots = static_cast<int>(std::bit_ceil(2 * static_cast<unsigned>(capacity)));
     const int expected = slots * (k_grid_clear_steps + k_grid_sum_steps) +
-                         room * (k_grid_insert_steps + k_grid_place_steps);
+                         capacity * (k_grid_insert_steps + k_grid_scatter_steps);
     for (const int budget : {1, 50, SliceSize::k_steps_max}) {
       const std::vector<int> steps = test.build(points, budget);
-      EXPECT_EQ(sum_of(steps), expected) << room << ' ' << budget;
-      EXPECT_EQ(test.grid.size(), room);
+      EXPECT_EQ(sum_of(steps), expected) << capacity << ' ' << budget;
+      EXPECT_EQ(test.grid.size(), capacity);
       if (budget == 1) {
-        EXPECT_EQ(steps.size(), 2u * static_cast<unsigned>(slots + room)) << "one at a time";
+        EXPECT_EQ(steps.size(), 2u * static_cast<unsigned>(slots + capacity)) << "one at a time";
       }
       if (budget == SliceSize::k_steps_max) {
         EXPECT_EQ(steps.size(), 4u);
@@ -77,7 +77,7 @@ TEST(PointGridSteps, OfPointsThatAreNoPlacesAreThoseOfTryingThem) {
   const std::vector<Vector3f> points(10, Vector3f(nan, 0, 0));
   EXPECT_EQ(sum_of(test.build(points, SliceSize::k_steps_max)),
             32 * (k_grid_clear_steps + k_grid_sum_steps) +
-                10 * (k_grid_insert_steps + k_grid_place_steps));
+                10 * (k_grid_insert_steps + k_grid_scatter_steps));
   EXPECT_EQ(test.grid.size(), 0);
   EXPECT_EQ(test.search_steps({0, 0, 0}, k_reach, -1), 0) << "it is empty";
 }
@@ -122,16 +122,16 @@ TEST(PointGridSteps, OfASearchLookAtEachPointOnce) {
 }
 
 TEST(PointGridSteps, EndInACrowdAfterAsManyPointsAsStated) {
-  for (const int at : {k_grid_points_looked_at - 1, k_grid_points_looked_at}) {
-    std::vector<Vector3f> points(k_grid_points_looked_at + 5, middle_of(0, 0, 0));
+  for (const int at : {k_grid_points_compared_max - 1, k_grid_points_compared_max}) {
+    std::vector<Vector3f> points(k_grid_points_compared_max + 5, middle_of(0, 0, 0));
     points[static_cast<std::size_t>(at)].x() += 0.005f;
     TestGrid test(1 << 15);
     (void)test.build(points, SliceSize::k_steps_max);
-    const bool looked_at = at < k_grid_points_looked_at;
+    const bool looked_at = at < k_grid_points_compared_max;
     EXPECT_EQ(
         test.search_steps(middle_of(0, 0, 0) + Vector3f(0.01f, 0, 0), k_reach, looked_at ? at : 0),
         27 * (k_grid_find_steps + k_grid_probe_steps) +
-            k_grid_points_looked_at * k_grid_point_steps);
+            k_grid_points_compared_max * k_grid_point_steps);
   }
 }
 
@@ -141,7 +141,7 @@ TEST(PointGridSteps, LookAtAsManySlotsAsDeclaredAndLeaveOutWhatHasNoneThere) {
   const int slots = 4 * k_grid_probes_max;
   const auto probes_of = [&](const std::vector<Vector3f>& points) {
     const int rest = slots * (k_grid_clear_steps + k_grid_sum_steps) +
-                     static_cast<int>(points.size()) * (k_grid_insert_steps + k_grid_place_steps);
+                     static_cast<int>(points.size()) * (k_grid_insert_steps + k_grid_scatter_steps);
     return (sum_of(test.build(points, SliceSize::k_steps_max)) - rest) / k_grid_probe_steps;
   };
   std::vector<Vector3f> same_slot{middle_of(0, 0, 0)};

@@ -19,7 +19,8 @@ std::vector<Vector3f> cloud(int count, float side) {
   return points;
 }
 
-Nearest plain(const std::vector<Vector3f>& points, const Vector3f& p, float radius) {
+Nearest nearest_by_brute_force(const std::vector<Vector3f>& points, const Vector3f& p,
+                               float radius) {
   Nearest best;
   best.square_m2 = radius * radius;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -38,7 +39,8 @@ TEST(PointGrid, FindsWhatAPlainSearchFinds) {
     int found = 0;
     for (const Vector3f& p : cloud(500, 0.6f)) {
       const Vector3f q = p + Vector3f(0.003f, -0.01f, 0.007f);
-      const Nearest nearest = grid.nearest(q, reach), expected = plain(points, q, reach);
+      const Nearest nearest = grid.nearest(q, reach),
+                    expected = nearest_by_brute_force(points, q, reach);
       EXPECT_EQ(nearest.index, expected.index);
       EXPECT_EQ(nearest.square_m2, expected.square_m2);
       found += nearest.index >= 0 ? 1 : 0;

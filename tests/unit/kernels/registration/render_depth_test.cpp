@@ -11,13 +11,13 @@
 namespace glint::render_depth_test {
 namespace {
 
-using test::k_two;
+using test::DepthBuffers;
 using test::k_wall;
-using test::Picture;
+using test::k_wall_faces;
 
 TEST(RenderDepth, GivesAPlanesDepthAtEachPixelsCentre) {
-  Picture picture;
-  ASSERT_EQ(picture.render(k_wall, k_two), Reason::none);
+  DepthBuffers picture;
+  ASSERT_EQ(picture.render(k_wall, k_wall_faces), Reason::none);
   for (const int x : {5, 20, 32, 50}) {
     const double slope = (x + 0.5 - 32) / 60;  // x / z along the ray
     EXPECT_NEAR(picture.z[picture.at(x, 10)], 1 / (1 - 0.5 * slope), 1e-6) << x;
@@ -25,15 +25,15 @@ TEST(RenderDepth, GivesAPlanesDepthAtEachPixelsCentre) {
 }
 
 TEST(RenderDepth, LeavesNoSeamAndNoHoleBetweenNeighbours) {
-  Picture picture;
-  ASSERT_EQ(picture.render(k_wall, k_two), Reason::none);
+  DepthBuffers picture;
+  ASSERT_EQ(picture.render(k_wall, k_wall_faces), Reason::none);
   for (int y = 2; y < 46; ++y) {
     for (int x = 2; x < 60; ++x) EXPECT_GE(picture.face[picture.at(x, y)], 0) << x << " " << y;
   }
 }
 
 TEST(RenderDepth, CoversThePixelsWhoseCentresLieOnItsOutline) {
-  Picture picture;
+  DepthBuffers picture;
   picture.camera.fx = picture.camera.fy = 64;
   // Columns 10.5 to 18.5 and rows 8.5 to 16.5; the area divides without rounding.
   const float left = -21.5f / 64, right = -13.5f / 64, top = -15.5f / 64, bottom = -7.5f / 64;
@@ -53,7 +53,7 @@ TEST(RenderDepth, KeepsWhatIsNearerWhicheverCameFirst) {
                                   {-1, -1, 1}, {1, -1, 1}, {0, 1, 1}};
   for (const std::vector<Face>& faces :
        {std::vector<Face>{{0, 1, 2}, {3, 4, 5}}, std::vector<Face>{{3, 4, 5}, {0, 1, 2}}}) {
-    Picture picture;
+    DepthBuffers picture;
     ASSERT_EQ(picture.render(points, faces), Reason::none);
     EXPECT_FLOAT_EQ(picture.z[picture.at(32, 20)], 1);
     EXPECT_EQ(picture.face[picture.at(32, 20)], faces[0].a == 0 ? 1 : 0);
@@ -63,7 +63,7 @@ TEST(RenderDepth, KeepsWhatIsNearerWhicheverCameFirst) {
 // Its pixel coordinates exceed the range of an integer.
 TEST(RenderDepth, LeavesOutWhatLiesFarBesideThePicture) {
   for (const float far : {1e12f, -1e12f}) {
-    Picture picture;
+    DepthBuffers picture;
     ASSERT_EQ(picture.render({{far, -1, 1}, {2 * far, -1, 1}, {far, 1, 1}}, {{0, 1, 2}}),
               Reason::none);
     for (const std::int32_t face : picture.face) EXPECT_EQ(face, -1);
@@ -71,7 +71,7 @@ TEST(RenderDepth, LeavesOutWhatLiesFarBesideThePicture) {
 }
 
 TEST(RenderDepth, LeavesOutWhatIsBehindOrNotANumber) {
-  Picture picture;
+  DepthBuffers picture;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   ASSERT_EQ(
       picture.render({{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}, {-1, -1, 1}, {1, -1, nan}, {0, 1, 1}},
@@ -81,15 +81,15 @@ TEST(RenderDepth, LeavesOutWhatIsBehindOrNotANumber) {
 }
 
 TEST(RenderDepth, RefusesWrongSizesAndFacesWithoutCorners) {
-  Picture picture;
+  DepthBuffers picture;
   EXPECT_EQ(picture.render(k_wall, {{0, 1, 4}}), Reason::out_of_range);
   EXPECT_EQ(picture.render(k_wall, {{0, -1, 2}}), Reason::out_of_range);
   picture.z.pop_back();
-  EXPECT_EQ(picture.render(k_wall, k_two), Reason::out_of_range);
+  EXPECT_EQ(picture.render(k_wall, k_wall_faces), Reason::out_of_range);
 }
 
 TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
-  Picture picture;
+  DepthBuffers picture;
   const std::vector<Face> many(5000, Face{0, 1, 2});
   EXPECT_EQ(picture.render(k_wall, many), Reason::search_full);
   EXPECT_GT(picture.z[picture.at(50, 10)], 0);
@@ -98,7 +98,7 @@ TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
 // Far beyond the range of an integer, on each side.
 TEST(RenderDepth, DrawsNothingOfATriangleFarOutsideThePicture) {
   for (const float far : {1e11f, -1e11f}) {
-    Picture picture;
+    DepthBuffers picture;
     const float more = 2 * far;
     EXPECT_EQ(picture.render({{far, -1, 1}, {more, -1, 1}, {more, 1, 1}}, {{0, 1, 2}}),
               Reason::none);
@@ -116,9 +116,9 @@ TEST(RenderDepth, TakesTheModelWhereItsPoseHasIt) {
   for (const Vector3f& corner : k_wall) {
     moved.emplace_back((pose * corner.cast<double>()).cast<float>());
   }
-  Picture a, b;
-  ASSERT_EQ(a.render(k_wall, k_two, pose), Reason::none);
-  ASSERT_EQ(b.render(moved, k_two), Reason::none);
+  DepthBuffers a, b;
+  ASSERT_EQ(a.render(k_wall, k_wall_faces, pose), Reason::none);
+  ASSERT_EQ(b.render(moved, k_wall_faces), Reason::none);
   int both = 0;
   for (std::size_t i = 0; i < a.z.size(); ++i) {
     if (a.face[i] < 0 || b.face[i] < 0) continue;
@@ -138,7 +138,7 @@ TEST(RenderDepth, SeesBothSidesOfAFaceAndKeepsTheFirstOfTwoInOnePlace) {
   const std::vector<Vector3f> points = {{-1, -1, 2}, {1, -1, 2}, {0, 1, 2}};
   for (const std::vector<Face>& faces : {std::vector<Face>{{0, 1, 2}}, std::vector<Face>{{0, 2, 1}},
                                          std::vector<Face>{{0, 1, 2}, {2, 1, 0}, {1, 2, 0}}}) {
-    Picture picture;
+    DepthBuffers picture;
     ASSERT_EQ(picture.render(points, faces), Reason::none);
     EXPECT_FLOAT_EQ(picture.z[picture.at(32, 20)], 2);
     EXPECT_EQ(picture.face[picture.at(32, 20)], 0);
@@ -153,7 +153,7 @@ TEST(RenderDepth, LeavesOutAFaceWithAnyCornerThatIsNotAhead) {
   for (std::size_t behind = 0; behind < 4; ++behind) {
     std::vector<Vector3f> points = {{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}};
     if (behind < 3) points[behind].z() = 0.04f;
-    Picture picture;
+    DepthBuffers picture;
     ASSERT_EQ(picture.render(points, {{0, 1, 2}}), Reason::none);
     int drawn = 0;
     for (const std::int32_t face : picture.face) drawn += face >= 0 ? 1 : 0;
@@ -170,11 +170,11 @@ TEST(RenderDepth, DrawsWhatItsTestsSufficeForAndNoFaceMore) {
   // Columns 8 to 16 and rows 6 to 12; the last face is nearer.
   const std::vector<Vector3f> points = {corner(8, 6, 2), corner(16, 6, 2), corner(8, 12, 2),
                                         corner(8, 6, 1), corner(16, 6, 1), corner(8, 12, 1)};
-  constexpr int k_faces = 64 * 48 * k_render_tests_a_pixel / 48;
+  constexpr int k_faces = 64 * 48 * k_render_tests_per_pixel / 48;
   for (const int faces : {k_faces, k_faces + 1}) {
     std::vector<Face> many(static_cast<std::size_t>(faces), Face{0, 1, 2});
     many.back() = {3, 4, 5};
-    Picture picture;
+    DepthBuffers picture;
     EXPECT_EQ(picture.render(points, many), faces == k_faces ? Reason::none : Reason::search_full);
     EXPECT_EQ(picture.face[picture.at(9, 7)], faces == k_faces ? faces - 1 : 0);
   }

@@ -10,15 +10,15 @@
 namespace glint::seen_points_test {
 namespace {
 
-using test::k_two;
+using test::DepthBuffers;
 using test::k_wall;
-using test::Picture;
+using test::k_wall_faces;
 
-struct Seen {
-  Picture picture;
+struct SeenPointsRun {
+  DepthBuffers picture;
   std::vector<Vector3f> corners = k_wall;
-  std::vector<Face> faces = k_two;
-  std::vector<SeenPoint> points = std::vector<SeenPoint>(64 * 48 + 1);
+  std::vector<Face> faces = k_wall_faces;
+  std::vector<VisiblePoint> points = std::vector<VisiblePoint>(64 * 48 + 1);
   int count = 0;
 
   int look(int step, const Pose& pose = {}) {
@@ -28,26 +28,26 @@ struct Seen {
     const auto pixels = static_cast<std::size_t>(view.camera.width * view.camera.height);
     // Entries behind the image's end would be visible points if they were read.
     picture.z.assign(pixels + 64, 1), picture.face.assign(pixels + 64, 0);
-    count = seen_points(view, pose, step,
-                        {std::span(picture.z).first(pixels), std::span(picture.face).first(pixels),
-                         picture.corners},
-                        points);
+    count = visible_points(view, pose, step,
+                           {std::span(picture.z).first(pixels),
+                            std::span(picture.face).first(pixels), picture.corners},
+                           points);
     return count;
   }
 };
 
 TEST(SeenPoints, AreNoMoreThanThereIsRoomFor) {
-  Picture picture;
+  DepthBuffers picture;
   SceneView view;
   view.camera = picture.camera;
-  view.model = {k_wall, k_two};
+  view.model = {k_wall, k_wall_faces};
   const DepthBuffer buffer{picture.z, picture.face, picture.corners};
-  std::vector<SeenPoint> all(64 * 48);
-  const int count = seen_points(view, {}, 4, buffer, all);
+  std::vector<VisiblePoint> all(64 * 48);
+  const int count = visible_points(view, {}, 4, buffer, all);
   EXPECT_GT(count, 100);
-  std::vector<SeenPoint> few(50);
+  std::vector<VisiblePoint> few(50);
   few[40].pixel = -7;
-  EXPECT_EQ(seen_points(view, {}, 4, buffer, std::span(few).first(40)), 40);
+  EXPECT_EQ(visible_points(view, {}, 4, buffer, std::span(few).first(40)), 40);
   EXPECT_EQ(few[40].pixel, -7);
   for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(few[i].pixel, all[i].pixel);
 }
@@ -55,7 +55,7 @@ TEST(SeenPoints, AreNoMoreThanThereIsRoomFor) {
 // Also where a step ends at the image's edge.
 TEST(SeenPoints, AreThePixelsOfTheRasterInTheirOrder) {
   for (const int step : {1, 2, 3, 4, 7, 31, 32, 47, 95, 96, 200}) {
-    Seen seen;
+    SeenPointsRun seen;
     seen.corners = {{-9, -9, 1}, {9, -9, 1}, {9, 9, 1}, {-9, 9, 1}};
     std::vector<int> expected;
     for (int y = step / 2; y < 48; y += step) {
@@ -66,7 +66,7 @@ TEST(SeenPoints, AreThePixelsOfTheRasterInTheirOrder) {
       EXPECT_EQ(seen.points[i].pixel, expected[i]);
     }
   }
-  for (const int step : {0, -1}) EXPECT_EQ(Seen().look(step), 0);
+  for (const int step : {0, -1}) EXPECT_EQ(SeenPointsRun().look(step), 0);
 }
 
 TEST(SeenPoints, LieOnTheModelAndHaveItsNormalsTowardsTheCamera) {
@@ -77,11 +77,11 @@ TEST(SeenPoints, LieOnTheModelAndHaveItsNormalsTowardsTheCamera) {
   const double offset = normal.dot(pose * k_wall[0].cast<double>());
   const Vector3 towards = offset > 0 ? Vector3(-normal) : normal;
   for (const bool turned : {false, true}) {
-    Seen seen;
+    SeenPointsRun seen;
     if (turned) seen.faces = {{0, 2, 1}, {0, 3, 2}};
     ASSERT_GT(seen.look(2, pose), 200);
     for (int i = 0; i < seen.count; ++i) {
-      const SeenPoint& point = seen.points[static_cast<std::size_t>(i)];
+      const VisiblePoint& point = seen.points[static_cast<std::size_t>(i)];
       const Vector3 p = point.point.cast<double>();
       ASSERT_LT((point.normal.cast<double>() - towards).norm(), 2e-6);
       ASSERT_NEAR(normal.dot(p), offset, 1e-5);
@@ -93,7 +93,7 @@ TEST(SeenPoints, LieOnTheModelAndHaveItsNormalsTowardsTheCamera) {
 
 // At such a long focal length the face covers pixels, but its cross product underflows to zero.
 TEST(SeenPoints, LeaveOutAFaceTooSmallForANormal) {
-  Seen seen;
+  SeenPointsRun seen;
   seen.corners = {{-1e-25f, -1e-25f, 1}, {1e-25f, -1e-25f, 1}, {0, 1e-25f, 1}};
   seen.faces = {{0, 1, 2}};
   seen.picture.camera.fx = seen.picture.camera.fy = 2e26;
@@ -104,7 +104,7 @@ TEST(SeenPoints, LeaveOutAFaceTooSmallForANormal) {
 }
 
 TEST(SeenPoints, AreNoneWhereTheModelIsNotRendered) {
-  Seen seen;
+  SeenPointsRun seen;
   seen.faces = {{0, 1, 4}};
   EXPECT_EQ(seen.look(1), 0);
 }

@@ -22,7 +22,7 @@ const double k_gate_m = AlignmentSettings{}.gates[4].gate_m;
 
 // The arm of boxes without background; the depth has a constant error and slopes in x and y.
 struct BiasedScene {
-  test::Model model;
+  test::BoxArm model;
   Pinhole camera{k_width, k_height, 300, 300, 160, 120};
   std::vector<float> depth = std::vector<float>(k_width * k_height);
   AlignmentScratch scratch;
@@ -53,7 +53,7 @@ double squared_distance(const Vector3& errors_m, double sigma_m) {
   const ModelAlignment end = align_model(one, k_truth, {}, scene.scratch);
   EXPECT_EQ(end.reason, Reason::none);
   const Result<Matrix6> shared =
-      shared_error_covariance(one, end.T_world_base, k_gate_m, {sigma_m, 1e-5}, scene.scratch);
+      consider_covariance(one, end.T_world_base, k_gate_m, {sigma_m, 1e-5}, scene.scratch);
   EXPECT_EQ(shared.reason, Reason::none);
   const Quaternion turn = end.T_world_base.rotation * k_truth.rotation.conjugate();
   Vector6 off;
@@ -77,7 +77,7 @@ TEST(SharedErrors, MovesTheRobotAlongTheRaysByAConstant) {
   BiasedScene scene(Vector3::Zero());
   const SceneView one[] = {scene.view()};
   const Result<Matrix6> shared =
-      shared_error_covariance(one, k_truth, k_gate_m, {0.006, 0}, scene.scratch);
+      consider_covariance(one, k_truth, k_gate_m, {0.006, 0}, scene.scratch);
   ASSERT_TRUE(shared);
   EXPECT_GT(std::sqrt(shared.value(2, 2)), 0.004);
   EXPECT_LT(std::sqrt(shared.value(2, 2)), 0.02);
@@ -87,7 +87,7 @@ TEST(SharedErrors, TurnsTheRobotAboutTheCameraWithItsRays) {
   BiasedScene scene(Vector3::Zero());
   const SceneView one[] = {scene.view()};
   const Result<Matrix6> shared =
-      shared_error_covariance(one, k_truth, k_gate_m, {0, 0.003}, scene.scratch);
+      consider_covariance(one, k_truth, k_gate_m, {0, 0.003}, scene.scratch);
   ASSERT_TRUE(shared);
   const Vector3& t = k_truth.translation;
   for (int axis = 0; axis < 3; ++axis) {
@@ -102,7 +102,7 @@ TEST(SharedErrors, TakesNothingFromTheHeap) {
   BiasedScene scene(Vector3::Zero());
   const SceneView one[] = {scene.view()};
   const HeapCount heap;
-  (void)shared_error_covariance(one, k_truth, k_gate_m, {}, scene.scratch);
+  (void)consider_covariance(one, k_truth, k_gate_m, {}, scene.scratch);
   EXPECT_EQ(heap.count(), 0u);
 }
 
@@ -110,12 +110,10 @@ TEST(SharedErrors, StatesWhereNothingIsSeen) {
   BiasedScene scene(Vector3::Zero());
   const SceneView one[] = {scene.view()};
   const Pose far{Quaternion::Identity(), {0, 0, -3}};
-  EXPECT_EQ(shared_error_covariance(one, far, k_gate_m, {}, scene.scratch).reason,
-            Reason::degenerate);
+  EXPECT_EQ(consider_covariance(one, far, k_gate_m, {}, scene.scratch).reason, Reason::degenerate);
   AlignmentScratch small;
   ASSERT_EQ(small.prepare(1, 100, 64), Reason::none);
-  EXPECT_EQ(shared_error_covariance(one, k_truth, k_gate_m, {}, small).reason,
-            Reason::not_prepared);
+  EXPECT_EQ(consider_covariance(one, k_truth, k_gate_m, {}, small).reason, Reason::not_prepared);
 }
 
 // Reference for the header's equation from single pairs, for two cameras that share their errors.
@@ -131,16 +129,16 @@ TEST(SharedErrors, AreThoseOfTheSumsOfAllPairs) {
   // Each camera sees the base at the same relative pose.
   const Pose T_world_base = other * k_truth;
   views[0].T_camera_world = views[1].T_camera_world = other.inverse();
-  const SharedErrors errors{0.005, 0.002};
+  const SystematicErrors errors{0.005, 0.002};
   const Result<Matrix6> found =
-      shared_error_covariance(views, T_world_base, k_gate_m, errors, scene.scratch);
+      consider_covariance(views, T_world_base, k_gate_m, errors, scene.scratch);
   ASSERT_EQ(found.reason, Reason::none);
   Matrix6 matrix = Matrix6::Zero();
   std::array<Vector6, 3> sums{Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
   for (std::size_t v = 0; v < 2; ++v) {
     const AlignmentScratch::View& memory = scene.scratch.views[v];
-    for (int i = 0; i < memory.seen_count; ++i) {
-      const SeenPoint& seen = memory.seen[static_cast<std::size_t>(i)];
+    for (int i = 0; i < memory.visible_count; ++i) {
+      const VisiblePoint& seen = memory.seen[static_cast<std::size_t>(i)];
       AlignmentSums pair;
       add_pairs({&seen, 1}, Pose{}, Matching::projective, k_gate_m, views[v], {}, other.rotation,
                 views[v].T_camera_world * T_world_base.translation, pair);

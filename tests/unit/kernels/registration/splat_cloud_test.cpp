@@ -9,13 +9,13 @@
 namespace glint::splat_cloud_test {
 namespace {
 
+using test::BoxArm;
 using test::k_truth;
-using test::Model;
 using test::SampledModel;
 
 constexpr std::size_t k_pixels = 160 * 120;
 
-struct Picture {
+struct DepthBuffers {
   std::vector<float> z = std::vector<float>(k_pixels);
   std::vector<std::int32_t> number = std::vector<std::int32_t>(k_pixels);
   std::vector<ProjectedCorner> corners = std::vector<ProjectedCorner>(100'000);
@@ -23,10 +23,10 @@ struct Picture {
 };
 
 struct Scene {
-  Model model;
+  BoxArm model;
   SampledModel sampled{model, 0.004f};
   Pinhole camera{160, 120, 150, 150, 80, 60};
-  Picture rendered;
+  DepthBuffers rendered;
   std::vector<float> depth;
   AlignmentScratch scratch;
 
@@ -45,7 +45,7 @@ struct Scene {
 
 TEST(SplatCloud, SeesWhatItsSurfaceShows) {
   Scene scene;
-  Picture splatted;
+  DepthBuffers splatted;
   ASSERT_EQ(splat_cloud(scene.sampled.cloud(), k_truth, scene.camera, splatted.buffer()),
             Reason::none);
   int both = 0, only_one = 0, apart = 0;
@@ -62,13 +62,13 @@ TEST(SplatCloud, SeesWhatItsSurfaceShows) {
 
 TEST(SplatCloud, SeenPointsLieOnTheSurfaceAndFaceTheCamera) {
   Scene scene;
-  Picture splatted;
-  std::vector<SeenPoint> seen(k_pixels);
-  const int count = seen_cloud_points(scene.view(), k_truth, 1, splatted.buffer(), seen);
+  DepthBuffers splatted;
+  std::vector<VisiblePoint> seen(k_pixels);
+  const int count = visible_cloud_points(scene.view(), k_truth, 1, splatted.buffer(), seen);
   EXPECT_GT(count, 1500);
   int beside = 0, off = 0;
   for (int i = 0; i < count; ++i) {
-    const SeenPoint& p = seen[static_cast<std::size_t>(i)];
+    const VisiblePoint& p = seen[static_cast<std::size_t>(i)];
     EXPECT_LT(p.normal.dot(p.point), 0);
     const auto pixel = static_cast<std::size_t>(p.pixel);
     if (scene.rendered.number[pixel] < 0)
@@ -78,7 +78,7 @@ TEST(SplatCloud, SeenPointsLieOnTheSurfaceAndFaceTheCamera) {
   }
   EXPECT_LT(beside, count / 50);
   EXPECT_LT(off, count / 50);  // at edges between two sides
-  const int fewer = seen_cloud_points(scene.view(), k_truth, 4, splatted.buffer(), seen);
+  const int fewer = visible_cloud_points(scene.view(), k_truth, 4, splatted.buffer(), seen);
   EXPECT_NEAR(fewer, count / 16, count / 50);
 }
 
@@ -100,18 +100,18 @@ TEST(SplatCloud, AlignsAndJudgesAsTrianglesDo) {
   EXPECT_LT((a.T_world_base.translation - b.T_world_base.translation).norm(), sigma);
   EXPECT_LT((a.T_world_base.translation - k_truth.translation).norm(), 3 * sigma);
   EXPECT_LT(std::sqrt(a.covariance.topLeftCorner<3, 3>().trace()), 1.3 * sigma);
-  const Judgement judged = judge_alignment(cloud, a.T_world_base, {}, scene.scratch);
+  const AlignmentScore judged = score_alignment(cloud, a.T_world_base, {}, scene.scratch);
   EXPECT_GT(judged.inlier_share(), 0.99);
   EXPECT_LT(judged.seen_through_share(), 0.03);  // discs that extend beyond edges
   EXPECT_GT(judged.outline_share(), 0.95);
   Pose aside = k_truth;
   aside.translation.x() += 0.1;
-  EXPECT_GT(judge_alignment(cloud, aside, {}, scene.scratch).seen_through_share(), 0.1);
+  EXPECT_GT(score_alignment(cloud, aside, {}, scene.scratch).seen_through_share(), 0.1);
 }
 
 TEST(SplatCloud, RefusesSizesThatDoNotFit) {
   Scene scene;
-  Picture picture;
+  DepthBuffers picture;
   ModelCloud cloud = scene.sampled.cloud();
   DepthBuffer small = picture.buffer();
   small.corners = small.corners.first(10);
@@ -128,7 +128,7 @@ TEST(SplatCloud, RefusesSizesThatDoNotFit) {
 }
 
 TEST(SplatCloud, EndsAfterItsBudgetOfTests) {
-  Picture picture;
+  DepthBuffers picture;
   const Pinhole camera{160, 120, 1500, 1500, 80, 60};
   const std::vector<Vector3f> points(60'000, Vector3f(0, 0, 0.1f)),
       normals(60'000, Vector3f(0, 0, 1));
@@ -138,7 +138,7 @@ TEST(SplatCloud, EndsAfterItsBudgetOfTests) {
 }
 
 TEST(SplatCloud, LeavesOutWhatIsNoPlace) {
-  Picture picture;
+  DepthBuffers picture;
   const float nan = std::nanf("");
   const std::vector<Vector3f> points = {{nan, 0, 1}, {0, 0, nan}, {0, 0, -1}, {1e30f, 0, 1e-3f}};
   const std::vector<Vector3f> normals(4, Vector3f(0, 0, 1));

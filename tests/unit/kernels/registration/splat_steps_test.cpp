@@ -20,7 +20,7 @@ struct Splat {
   std::vector<float> z;
   std::vector<std::int32_t> number;
   std::vector<ProjectedCorner> corners;
-  std::vector<SeenPoint> seen;
+  std::vector<VisiblePoint> seen;
   CloudSplat run;
   int calls = 0;
 
@@ -28,24 +28,24 @@ struct Splat {
   explicit Splat(const std::vector<Vector3f>& of_points = {}) : points(of_points) {
     normals.assign(points.size(), Vector3f(0, 0, -1));
   }
-  [[nodiscard]] Reason start(std::size_t room = 1'000) {
+  [[nodiscard]] Reason start(std::size_t capacity = 1'000) {
     const auto pixels = static_cast<std::size_t>(camera.width * camera.height);
     z.assign(pixels, -1), number.assign(pixels, 77);
     corners.assign(points.size(), ProjectedCorner{9, 9, 9});
-    seen.assign(room + 1, SeenPoint{{}, {}, -7});
+    seen.assign(capacity + 1, VisiblePoint{{}, {}, -7});
     calls = 0;
     return run.start({points, normals, spacing_m}, {}, camera, raster, {z, number, corners},
-                     std::span(seen).first(room));
+                     std::span(seen).first(capacity));
   }
   // Sum of the steps of all calls.
-  int steps(int budget = SliceSize::k_steps_max, std::size_t room = 1'000) {
-    EXPECT_EQ(start(room), Reason::none);
+  int steps(int budget = SliceSize::k_steps_max, std::size_t capacity = 1'000) {
+    EXPECT_EQ(start(capacity), Reason::none);
     int sum = 0;
     for (bool done = false; !done; ++calls) {
       StepBudget left(budget);
       done = run.step(left);
       sum += budget - left.left();
-      EXPECT_LT(budget - left.left(), budget + k_splat_item_steps_max + k_splat_seen_steps);
+      EXPECT_LT(budget - left.left(), budget + k_splat_item_steps_max + k_splat_visible_steps);
     }
     return sum;
   }
@@ -57,7 +57,7 @@ struct Splat {
 };
 
 // Clearing in one call.
-constexpr int k_clear_steps = 1 + k_side * k_side / k_splat_cleared_a_step;
+constexpr int k_clear_steps = 1 + k_side * k_side / k_splat_cleared_per_step;
 
 int steps_of_tests(int reach) { return (2 * reach + 1) * (2 * reach + 1) * k_splat_test_steps; }
 
@@ -88,11 +88,11 @@ TEST(SplatSteps, AddUpInSlicesOfAnySize) {
   const int drawn = splat.drawn();
   EXPECT_GT(drawn, 3);
   EXPECT_EQ(whole, k_clear_steps + 25 * k_splat_point_steps + 20 * steps_of_tests(2) +
-                       k_side * k_side * k_splat_pixel_steps + drawn * k_splat_seen_steps);
+                       k_side * k_side * k_splat_pixel_steps + drawn * k_splat_visible_steps);
   const int count = splat.run.count();
   for (const int budget : {1, 16, 100, 5'000}) {
     // Each call that clears takes one additional step.
-    const int cleared = budget * k_splat_cleared_a_step;
+    const int cleared = budget * k_splat_cleared_per_step;
     const int clears = (k_side * k_side + cleared - 1) / cleared;
     EXPECT_EQ(splat.steps(budget), whole + clears - 1) << budget;
     EXPECT_EQ(splat.run.count(), count);
@@ -215,7 +215,7 @@ TEST(SplatCloud, IsThatOfPlainLoopsOverDiscsAndPixels) {
     EXPECT_NEAR(splat.run.count(), static_cast<int>(seen.size()), 2);
     if (splat.run.count() != static_cast<int>(seen.size())) continue;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      const SeenPoint& point = splat.seen[i];
+      const VisiblePoint& point = splat.seen[i];
       EXPECT_EQ(point.pixel, static_cast<int>(seen[i]));
       const Vector3f expected =
           pixel_point(splat.camera, point.pixel % 40, point.pixel / 40, splat.z[seen[i]]);
@@ -249,7 +249,7 @@ TEST(SplatCloud, DrawsAndSeesPixelsAtExactlyItsRadii) {
 TEST(SplatCloud, ClearsWithoutABudget) {
   Splat splat({Vector3f(0, 0, 1)});
   ASSERT_EQ(splat.start(), Reason::none);
-  for (int i = 0; i < k_side * k_side / k_splat_cleared_a_step; ++i) {
+  for (int i = 0; i < k_side * k_side / k_splat_cleared_per_step; ++i) {
     EXPECT_EQ(splat.z.back(), -1);
     StepBudget spent(0);
     EXPECT_FALSE(splat.run.step(spent));
@@ -278,19 +278,19 @@ TEST(SplatCloud, GathersThePixelsOfTheRasterInTheirOrder) {
       for (int x = raster / 2; x < 12; x += raster) expected.push_back(y * 12 + x);
     }
     const auto all = expected.size();
-    const int before = 1 + 120 / k_splat_cleared_a_step + k_splat_point_steps + steps_of_tests(6);
-    for (const std::size_t room : {std::size_t{0}, std::size_t{1}, all, std::size_t{200}}) {
-      const int steps = splat.steps(SliceSize::k_steps_max, room);
-      const std::size_t count = std::min(room, all);
+    const int before = 1 + 120 / k_splat_cleared_per_step + k_splat_point_steps + steps_of_tests(6);
+    for (const std::size_t capacity : {std::size_t{0}, std::size_t{1}, all, std::size_t{200}}) {
+      const int steps = splat.steps(SliceSize::k_steps_max, capacity);
+      const std::size_t count = std::min(capacity, all);
       ASSERT_EQ(splat.run.count(), static_cast<int>(count)) << raster;
       for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(splat.seen[i].pixel, expected[i]);
-      EXPECT_EQ(splat.seen[room].pixel, -7) << "behind the room";
+      EXPECT_EQ(splat.seen[capacity].pixel, -7) << "behind the room";
       // If the output is full, one more pixel is read.
-      const int more = room > 0 && room < all ? k_splat_pixel_steps : 0;
+      const int more = capacity > 0 && capacity < all ? k_splat_pixel_steps : 0;
       EXPECT_EQ(
           steps,
-          before + static_cast<int>(count) * (k_splat_pixel_steps + k_splat_seen_steps) + more)
-          << raster << ' ' << room;
+          before + static_cast<int>(count) * (k_splat_pixel_steps + k_splat_visible_steps) + more)
+          << raster << ' ' << capacity;
     }
   }
 }
@@ -332,7 +332,7 @@ TEST(SplatCloud, TakesEachSizeAtItsLimitAndRefusesItBeyond) {
   std::vector<float> z(13, 0);
   std::vector<std::int32_t> number(13);
   std::vector<ProjectedCorner> corners(4);
-  std::vector<SeenPoint> seen(20);
+  std::vector<VisiblePoint> seen(20);
   const auto reason = [&](int width, int height, std::size_t zs, std::size_t numbers,
                           std::size_t corner_count, std::size_t normal_count) {
     CloudSplat run;
@@ -372,7 +372,7 @@ TEST(SplatCloud, TakesEachSizeAtItsLimitAndRefusesItBeyond) {
   SceneView wrong;
   wrong.camera = {4, 3, 10, 10, 2, 2};
   wrong.cloud = {points, normals, 0.1f};
-  EXPECT_EQ(seen_cloud_points(wrong, {}, 1, {std::span(z).first(12), number, corners}, seen), 0);
+  EXPECT_EQ(visible_cloud_points(wrong, {}, 1, {std::span(z).first(12), number, corners}, seen), 0);
 }
 
 }  // namespace

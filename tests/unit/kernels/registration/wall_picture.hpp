@@ -7,7 +7,7 @@
 
 namespace glint::test {
 
-struct Picture {
+struct DepthBuffers {
   Pinhole camera{64, 48, 60, 60, 32, 24};
   std::vector<float> z = std::vector<float>(64 * 48);
   std::vector<std::int32_t> face = std::vector<std::int32_t>(64 * 48);
@@ -23,6 +23,6 @@ struct Picture {
 // Tilted wall: z = 1 + x / 2.
 inline const std::vector<Vector3f> k_wall = {
     {-1, -2, 0.5f}, {1, -2, 1.5f}, {1, 2, 1.5f}, {-1, 2, 0.5f}};
-inline const std::vector<Face> k_two = {{0, 1, 2}, {0, 2, 3}};
+inline const std::vector<Face> k_wall_faces = {{0, 1, 2}, {0, 2, 3}};
 
 }  // namespace glint::test

@@ -13,12 +13,17 @@ JointTree two_bars() {  // 1 m along x, revolute about z; the same again, with a
   JointTree tree;
   tree.joint_count = 3;
   tree.input_count = 2;
-  tree.joints[0] = {{}, Vector3::UnitZ(), JointKind::turning, 0, 0, 1, 0};
-  tree.joints[1] = {
-      {Quaternion::Identity(), Vector3::UnitX()}, Vector3::UnitZ(), JointKind::turning, 1, 1, 1, 0};
+  tree.joints[0] = {{}, Vector3::UnitZ(), JointKind::revolute, 0, 0, 1, 0};
+  tree.joints[1] = {{Quaternion::Identity(), Vector3::UnitX()},
+                    Vector3::UnitZ(),
+                    JointKind::revolute,
+                    1,
+                    1,
+                    1,
+                    0};
   tree.joints[2] = {{Quaternion::Identity(), Vector3::UnitX()},
                     Vector3::UnitY(),
-                    JointKind::sliding,
+                    JointKind::prismatic,
                     2,
                     1,
                     0.5,
@@ -75,7 +80,7 @@ TEST(ForwardKinematics, StaysRigidOverTheLongestChain) {
   for (int i = 0; i < k_robot_joints_max; ++i) {
     tree.joints[static_cast<std::size_t>(i)] = {{Quaternion::Identity(), Vector3::UnitX()},
                                                 Vector3::UnitZ(),
-                                                JointKind::turning,
+                                                JointKind::revolute,
                                                 i,
                                                 0,
                                                 1,
@@ -97,10 +102,10 @@ TEST(ForwardKinematics, MovesEachKindOfJointByItsPosition) {
   JointTree tree;
   tree.joint_count = 4;
   tree.input_count = 2;
-  tree.joints[0] = {at, axis, JointKind::turning, 0, 1, -2, 0.25};
-  tree.joints[1] = {at, axis, JointKind::sliding, 0, 1, 3, -0.5};
+  tree.joints[0] = {at, axis, JointKind::revolute, 0, 1, -2, 0.25};
+  tree.joints[1] = {at, axis, JointKind::prismatic, 0, 1, 3, -0.5};
   tree.joints[2] = {at, axis, JointKind::fixed, 1, 0, 1, 0};
-  tree.joints[3] = {at, axis, JointKind::turning, 2, -1, 7, 0.125};
+  tree.joints[3] = {at, axis, JointKind::revolute, 2, -1, 7, 0.125};
   LinkPoses poses;
   poses.T_root_link[0].translation = Vector3(9, 9, 9);
   const std::vector<double> values{40, 0.75};
@@ -129,7 +134,7 @@ TEST(ForwardKinematics, TakesEachPositionUpToItsLimit) {
   const double beyond = std::nextafter(k_joint_position_max, 1e9);
   const auto reason_of = [](int joint, double value, double offset = 0) {
     JointTree tree = two_bars();
-    tree.joints[2] = {{}, Vector3::UnitX(), JointKind::sliding, 2, joint < 0 ? -1 : 1, 2, offset};
+    tree.joints[2] = {{}, Vector3::UnitX(), JointKind::prismatic, 2, joint < 0 ? -1 : 1, 2, offset};
     LinkPoses poses;
     return forward_kinematics(tree, std::vector<double>{0, value}, poses);
   };

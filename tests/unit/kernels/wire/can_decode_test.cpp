@@ -32,7 +32,7 @@ CanFrame fd(std::uint8_t length = 64) {
   return frame;
 }
 
-bool is_taken_by_all(const CanFrame& frame) {
+bool is_accepted_by_all(const CanFrame& frame) {
   const bool taken = static_cast<bool>(decode_position(frame));
   EXPECT_EQ(static_cast<bool>(decode_orientation(frame)), taken);
   EXPECT_EQ(static_cast<bool>(decode_velocity(frame)), taken);
@@ -43,15 +43,15 @@ bool is_taken_by_all(const CanFrame& frame) {
 
 // Each frame's checksum is valid; only its kind (length, flags) is wrong.
 TEST(CanDecode, TakesEightBytesOfAClassicFrameWithAnElevenBitIdentifier) {
-  EXPECT_TRUE(is_taken_by_all(classic(0)));
+  EXPECT_TRUE(is_accepted_by_all(classic(0)));
   for (std::uint8_t length = 2; length <= 12; ++length)
-    EXPECT_EQ(is_taken_by_all(classic(0, length)), length == 8) << int{length};
+    EXPECT_EQ(is_accepted_by_all(classic(0, length)), length == 8) << int{length};
   CanFrame flagged = classic(0);
   flagged.fd = true;
-  EXPECT_FALSE(is_taken_by_all(flagged));
+  EXPECT_FALSE(is_accepted_by_all(flagged));
   flagged = classic(0);
   flagged.extended = true;
-  EXPECT_FALSE(is_taken_by_all(flagged));
+  EXPECT_FALSE(is_accepted_by_all(flagged));
   EXPECT_EQ(decode_position(flagged).reason, Reason::frame_invalid);
 }
 

@@ -69,16 +69,16 @@ TEST(SmallestThree, TakesAQuaternionOfAlmostUnitLengthAsOfUnitLength) {
 
 // The largest component is the omitted one: each index of it, with either sign.
 TEST(SmallestThree, GivesBackTheLargestComponentAtEachPlace) {
-  for (int place = 0; place < 4; ++place) {
+  for (int index = 0; index < 4; ++index) {
     for (const double sign : {1.0, -1.0}) {
       Eigen::Vector4d parts(0.1, -0.2, 0.3, -0.4);  // x, y, z, w
-      parts[place] = sign * 0.9;
+      parts[index] = sign * 0.9;
       parts.normalize();
       const SmallestThree packed = to_smallest_three(Quaternion(parts));
-      EXPECT_EQ(packed.left_out, place);
+      EXPECT_EQ(packed.left_out, index);
       const Eigen::Vector4d back = from_smallest_three(packed).coeffs();
-      EXPECT_LT((back - sign * parts).cwiseAbs().maxCoeff(), 3 * k_smallest_three_step) << place;
-      EXPECT_GT(back[place], 0);
+      EXPECT_LT((back - sign * parts).cwiseAbs().maxCoeff(), 3 * k_smallest_three_step) << index;
+      EXPECT_GT(back[index], 0);
     }
   }
 }

@@ -20,7 +20,7 @@ namespace glint::background_test {
 namespace {
 
 constexpr int k_steps = 1'000;
-constexpr auto k_third = static_cast<std::size_t>(k_background_group_index);
+constexpr auto k_background = static_cast<std::size_t>(k_background_group_index);
 
 Cell cell_with(const std::string& background) {
   return cell_from_text("name = \"background\"\n" + background, "cell.toml");
@@ -30,9 +30,9 @@ struct Fixture {
   explicit Fixture(int cores = 2,
                    const std::string& background = "[background]\nperiod_ms = 50\nsteps = 1000\n",
                    double ns_a_count = 0.2)
-      : cell(cell_with(background)), board(flat_board(ns_a_count)), limits(small_limits()) {
+      : cell(cell_with(background)), board(uniform_costs(ns_a_count)), limits(small_limits()) {
     limits.background_steps = k_steps;
-    limits.reference_steps = 0;  // no robot is tracked
+    limits.tracking_steps = 0;  // no robot is tracked
     model = task_model_of(cell, board.table(), board.system, limits);
     model.cores = cores;
     plan = synthesize(model);
@@ -67,7 +67,7 @@ constexpr std::int64_t k_idle_ns = 1;  // FollowRobot without a robot
 TEST(BackgroundGroupOfACell, HasItsPeriodAsGapAndDeadlineAndItsSliceAsBound) {
   const Fixture fixture;
   ASSERT_EQ(fixture.model.groups.size(), 3U);
-  const TaskGroup& group = fixture.model.groups[k_third];
+  const TaskGroup& group = fixture.model.groups[k_background];
   EXPECT_EQ(group.name, "background");
   EXPECT_TRUE(group.resumable);
   EXPECT_EQ(group.min_gap_ns, 50'000'000);
@@ -91,10 +91,10 @@ TEST(BackgroundGroupOfACell, IsNoneWhereTheCellHasNone) {
 }
 
 TEST(BackgroundGroupOfACell, NeedsABoardThatPricesItsSlice) {
-  Board board = flat_board(0.2);
+  Board board = uniform_costs(0.2);
   std::erase_if(board.kernels,
                 [](const auto& kernel) { return kernel.loops.kernel == "ExtendMap"; });
-  price(board);
+  compute_costs(board);
   const Limits limits = small_limits();
   EXPECT_NO_THROW((void)task_model_of(default_cell(), board.table(), board.system, limits));
   try {
@@ -121,7 +121,7 @@ TEST(BackgroundGroupOfACell, IsPricedByTheBuiltInBoardsThatNameItsGraph) {
     if (board.graphs.size() == 2) continue;
     ++priced;
     const TaskModel model = task_model_of(cell, board.table(), board.system, limits_of(cell));
-    EXPECT_GT(model.groups[k_third].longest_slice_ns, k_background_steps_max) << name;
+    EXPECT_GT(model.groups[k_background].longest_slice_ns, k_background_steps_max) << name;
   }
   EXPECT_GE(priced, 1);
 }
@@ -166,7 +166,7 @@ TEST(BackgroundPlanFile, EditedByHandIsJudgedAgain) {
     first.insert(first.find("\n[[group]]"), moved);
     const Plan plan = fixture.read(first);
     EXPECT_TRUE(check_plan(plan, fixture.model).empty());
-    EXPECT_EQ(plan.groups[k_third].name, "background");
+    EXPECT_EQ(plan.groups[k_background].name, "background");
     EXPECT_EQ(plan.nodes.back().core, core[7] - '0');
     CheckInput input = fixture.input();
     input.plan = plan;
@@ -183,9 +183,9 @@ TEST(BackgroundPlanFile, EditedByHandIsJudgedAgain) {
   const auto faults = check_plan(urgent, fixture.model);
   ASSERT_EQ(faults.size(), 2U);
   EXPECT_EQ(faults[0].find("background: priority 60; expected below 45"), 0U) << faults[0];
-  const Plan cheap = fixture.read(edited("bound_ns = 2801", "bound_ns = 2800"));
-  ASSERT_EQ(check_plan(cheap, fixture.model).size(), 1U);
-  EXPECT_NE(check_plan(cheap, fixture.model)[0].find("expected at least its bound, 2801 ns"),
+  const Plan inexpensive = fixture.read(edited("bound_ns = 2801", "bound_ns = 2800"));
+  ASSERT_EQ(check_plan(inexpensive, fixture.model).size(), 1U);
+  EXPECT_NE(check_plan(inexpensive, fixture.model)[0].find("expected at least its bound, 2801 ns"),
             std::string::npos);
   EXPECT_NE(fixture.refusal(edited("core = ", "core = 9")).find("ExtendMap on core 9"),
             std::string::npos);
@@ -217,7 +217,7 @@ TEST(BackgroundCheck, ScaledByHandMakesTheSliceAndWhatItBlocksGrow) {
   const auto found = [&](double factor) {
     CheckOptions options;
     options.scale["ExtendMap"] = factor;
-    return assess(question_of(fixture.input(), options));
+    return assess(analysis_input_of(fixture.input(), options));
   };
   const Assessment one = found(1), more = found(1.3);
   for (const std::size_t g : {std::size_t{0}, std::size_t{1}}) {
@@ -225,7 +225,7 @@ TEST(BackgroundCheck, ScaledByHandMakesTheSliceAndWhatItBlocksGrow) {
     EXPECT_EQ(more.groups[g].blocking_ns, 3'642 + k_idle_ns);  // 3641.3, rounded up
     EXPECT_EQ(*more.groups[g].response_ns, *one.groups[g].response_ns + 841);
   }
-  EXPECT_EQ(more.groups[k_third].times.makespan_ns, 3'642 + k_idle_ns);
+  EXPECT_EQ(more.groups[k_background].times.makespan_ns, 3'642 + k_idle_ns);
 }
 
 TEST(BackgroundCheck, FindsTheFactorThatASliceMayGrowByAndNoMore) {
@@ -240,9 +240,9 @@ TEST(BackgroundCheck, FindsTheFactorThatASliceMayGrowByAndNoMore) {
   ASSERT_LT(*slack.all_copies, k_factor_max);
   CheckOptions options;
   options.scale["ExtendMap"] = *slack.all_copies;
-  EXPECT_TRUE(assess(question_of(fixture.input(), options)).holds());
+  EXPECT_TRUE(assess(analysis_input_of(fixture.input(), options)).holds());
   options.scale["ExtendMap"] = *slack.all_copies * 1.001;
-  EXPECT_FALSE(assess(question_of(fixture.input(), options)).holds());
+  EXPECT_FALSE(assess(analysis_input_of(fixture.input(), options)).holds());
 }
 
 TEST(BackgroundCheck, IsHeldAgainstTheSlicesThatARunSaw) {

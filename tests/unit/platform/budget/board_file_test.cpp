@@ -48,7 +48,7 @@ std::string with(std::string text, const std::string& old, const std::string& no
   return text.replace(at, old.size(), now);
 }
 
-std::string complaint_of(const std::string& text, BoardUse use = BoardUse::run_here) {
+std::string error_message_of(const std::string& text, BoardUse use = BoardUse::run_here) {
   try {
     (void)parsed(text, use);
   } catch (const InputError& error) {
@@ -90,19 +90,19 @@ TEST(BoardFile, ReadsBackWhatItWrites) {
 
 TEST(BoardFile, OfAnotherArchitectureServesForAnalysisOnly) {
   const std::string arm = with(k_toy, "x86_64 GNU", "aarch64 GNU");
-  EXPECT_EQ(complaint_of(arm, BoardUse::analyse), "accepted");
-  EXPECT_NE(complaint_of(arm, BoardUse::run_here).find("toy.toml:2: build is \"aarch64"),
+  EXPECT_EQ(error_message_of(arm, BoardUse::analyse), "accepted");
+  EXPECT_NE(error_message_of(arm, BoardUse::run_here).find("toy.toml:2: build is \"aarch64"),
             std::string::npos);
 }
 
-struct BadBoard {
+struct InvalidBoardFile {
   const char* old;
   const char* now;
   const char* expected;
 };
 
 TEST(BoardFile, RefusesWhatItCannotVouchForByLineFindingAndExpectation) {
-  const BadBoard cases[] = {
+  const InvalidBoardFile cases[] = {
       {"name = \"toy\"", "", "toy.toml:1: name is missing; expected a text"},
       {"GNU 12.2.0", "Clang 14.0.6", "toy.toml:2: build is \"x86_64 Clang 14.0.6 -O3\"; expected"},
       {"12.2.0 -O3", "12.2.0 -O1", "toy.toml:2: build is \"x86_64 GNU 12.2.0 -O1\"; expected"},
@@ -131,8 +131,8 @@ TEST(BoardFile, RefusesWhatItCannotVouchForByLineFindingAndExpectation) {
       {"machine = \"a bench\"", "", "provenance.machine is missing"},
       {"[graphs]", "[graphs", "toy.toml:5: "},
   };
-  for (const BadBoard& bad : cases) {
-    const std::string found = complaint_of(with(k_toy, bad.old, bad.now));
+  for (const InvalidBoardFile& bad : cases) {
+    const std::string found = error_message_of(with(k_toy, bad.old, bad.now));
     EXPECT_NE(found.find(bad.expected), std::string::npos) << found << "\n  for " << bad.now;
     EXPECT_EQ(found.find('\n'), std::string::npos) << found;
   }

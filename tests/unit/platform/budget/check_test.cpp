@@ -21,7 +21,7 @@ namespace glint::check_test {
 namespace {
 
 struct Fixture {
-  explicit Fixture(double ns_a_count = 0.2, int cores = 2) : board(flat_board(ns_a_count)) {
+  explicit Fixture(double ns_a_count = 0.2, int cores = 2) : board(uniform_costs(ns_a_count)) {
     TaskModel model = task_model_of(cell, board.table(), board.system, small_limits());
     model.cores = cores;
     plan = synthesize(model);
@@ -65,9 +65,9 @@ TEST(Check, BreakEvenClockHoldsAndABitLessDoesNot) {
   ASSERT_TRUE(result.system);
   CheckOptions options;
   options.clock = 1 / *result.system * 1.0001;
-  EXPECT_TRUE(assess(question_of(fixture.input(), options)).holds());
+  EXPECT_TRUE(assess(analysis_input_of(fixture.input(), options)).holds());
   options.clock = 1 / *result.system * 0.999;
-  EXPECT_FALSE(assess(question_of(fixture.input(), options)).holds());
+  EXPECT_FALSE(assess(analysis_input_of(fixture.input(), options)).holds());
   const CheckResult slow = check(fixture.input(), options);
   EXPECT_FALSE(slow.fails.empty());
   EXPECT_EQ(check_json(fixture.input(), options, slow)["void"].size(), 1U);
@@ -116,9 +116,9 @@ TEST(Check, ScalesOneKernelUpToItsSlackAndNoFurther) {
     ASSERT_LT(*slack.all_copies, k_factor_max);
     CheckOptions options;
     options.scale["FindBlobs"] = *slack.all_copies;
-    EXPECT_TRUE(assess(question_of(fixture.input(), options)).holds());
+    EXPECT_TRUE(assess(analysis_input_of(fixture.input(), options)).holds());
     options.scale["FindBlobs"] = *slack.all_copies * 1.001;
-    EXPECT_FALSE(assess(question_of(fixture.input(), options)).holds());
+    EXPECT_FALSE(assess(analysis_input_of(fixture.input(), options)).holds());
   }
   CheckOptions unknown;
   unknown.scale["blob"] = 1.3;

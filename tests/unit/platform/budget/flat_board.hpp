@@ -10,7 +10,7 @@
 namespace glint {
 
 // Every loop of every kernel costs `ns_a_count`.
-inline Board flat_board(double ns_a_count) {
+inline Board uniform_costs(double ns_a_count) {
   Board board;
   board.name = "flat";
   board.sha256 = std::string(64, '0');
@@ -22,7 +22,7 @@ inline Board flat_board(double ns_a_count) {
   for (const BoardExpectation::Optional& optional : expected.optional) {
     std::for_each(optional.kernels.begin(), optional.kernels.end(), add);
   }
-  price(board);
+  compute_costs(board);
   board.system = {20'000, 2'000, 1'000'000, 5'000, 500};
   return board;
 }

@@ -16,10 +16,10 @@ namespace {
 
 MeasureRequest toy_request() {
   MeasureRequest request;
-  request.program = beside_test("glint_measure_toy");
+  request.program = path_beside_test("glint_measure_toy");
   request.emulator = "qemu-x86_64";
   request.cpu_model = "qemu64";
-  request.plugin = beside_test("glint_count_instructions.so");
+  request.plugin = path_beside_test("glint_count_instructions.so");
   request.inputs = 400;
   return request;
 }
@@ -52,7 +52,7 @@ TEST(InputNumbers, PutHalfOfEveryKindIntoEachHalf) {
     for (int kind = 0; kind < 4; ++kind) {
       int fitted = 0;
       for (std::uint64_t number = 0; number < 1000; ++number) {
-        fitted += fits_on({static_cast<InputKind>(kind), number, limits}) ? 1 : 0;
+        fitted += is_in_fit_half({static_cast<InputKind>(kind), number, limits}) ? 1 : 0;
       }
       EXPECT_NEAR(fitted, 500, 80) << kind;  // five standard deviations of a fair coin
     }
@@ -81,10 +81,10 @@ TEST(CountInstructions, CountsExactlyWhatALoopAdds) {
   };
   const double none = cost_at(0);
   const double cell = cost_at(64);
-  const double most = cost_at(256);
+  const double cost_max_steps = cost_at(256);
   ASSERT_GE(none, 0);
   // A step costs a constant whole number of instructions in a long loop.
-  const double step = (most - cell) / (256 - 64);
+  const double step = (cost_max_steps - cell) / (256 - 64);
   EXPECT_EQ(step, static_cast<double>(static_cast<int>(step)));
   EXPECT_GE(step, 3);  // load, compute, store
   EXPECT_LT(cell - none - 64 * step, 10);
@@ -113,9 +113,9 @@ TEST(Measure, TakesTimeOnThisMachine) {
   request.count_instructions = false;
   request.emulator.clear();
   const KernelObservations toy = observed(request).kernels.at(0);
-  double dearest = 0;
-  for (const Observation& seen : toy.calls) dearest = std::max(dearest, seen.call.cost);
-  EXPECT_GT(dearest, 10);  // 256 dependent steps through memory
+  double cost_max = 0;
+  for (const Observation& seen : toy.calls) cost_max = std::max(cost_max, seen.call.cost);
+  EXPECT_GT(cost_max, 10);  // 256 dependent steps through memory
 }
 
 Observations pass_of(std::initializer_list<double> costs) {
@@ -129,7 +129,7 @@ Observations pass_of(std::initializer_list<double> costs) {
 
 TEST(Passes, KeepTheLeastOfEachCall) {
   Observations kept = pass_of({5, 2, 9});
-  keep_least(kept, pass_of({4, 3, 9}));
+  keep_minimum(kept, pass_of({4, 3, 9}));
   EXPECT_EQ(kept.kernels[0].calls[0].call.cost, 4);
   EXPECT_EQ(kept.kernels[0].calls[1].call.cost, 2);
   EXPECT_EQ(kept.kernels[0].calls[2].call.cost, 9);
@@ -137,11 +137,11 @@ TEST(Passes, KeepTheLeastOfEachCall) {
 
 TEST(Passes, RefuseOneThatDidOtherWork) {
   Observations kept = pass_of({5, 2});
-  EXPECT_THROW(keep_least(kept, pass_of({5})), InputError);
-  EXPECT_THROW(keep_least(kept, {}), InputError);
+  EXPECT_THROW(keep_minimum(kept, pass_of({5})), InputError);
+  EXPECT_THROW(keep_minimum(kept, {}), InputError);
   Observations other = pass_of({5, 2});
   other.kernels[0].calls[1].call.counts[1] = 8;
-  EXPECT_THROW(keep_least(kept, other), InputError);
+  EXPECT_THROW(keep_minimum(kept, other), InputError);
 }
 
 TEST(Measure, RefusesAKernelThatIsNotThereAndNamesThoseThatAre) {
@@ -188,20 +188,20 @@ TEST(Observations, AreRefusedWhereTheyAreNotWhole) {
 TEST(CostFit, SeesACallAboveTheBoundOfABoard) {
   const KernelObservations seen = parsed(k_seen, {0, 1000});
   const std::array<std::string_view, 2> loops = {"call", "steps"};
-  const BoardKernel dear{{"Toy", loops}, {0, 100}};
-  const BoardKernel cheap{{"Toy", loops}, {0, 99}};
-  EXPECT_TRUE(costs_of(seen, &dear, 0).holds());
-  EXPECT_FALSE(costs_of(seen, &cheap, 0).holds());
-  EXPECT_EQ(costs_of(seen, &cheap, 0).at[0].bound, 990);
+  const BoardKernel expensive{{"Toy", loops}, {0, 100}};
+  const BoardKernel inexpensive{{"Toy", loops}, {0, 99}};
+  EXPECT_TRUE(costs_of(seen, &expensive, 0).holds());
+  EXPECT_FALSE(costs_of(seen, &inexpensive, 0).holds());
+  EXPECT_EQ(costs_of(seen, &inexpensive, 0).at[0].bound, 990);
 }
 
 TEST(CostFit, SeesALoopThatRanMoreOftenThanDeclared) {
   const KernelObservations seen =
       parsed("loops call steps\nworst 0 1 9\nworst 1 1 5\ninput 0 worst 3 1 10 7.5\n", {});
   const std::array<std::string_view, 2> loops = {"call", "steps"};
-  const BoardKernel dear{{"Toy", loops}, {0, 100}};
-  EXPECT_EQ(costs_of(seen, &dear, 0).beyond_declared, 1);
-  EXPECT_FALSE(costs_of(seen, &dear, 0).holds());
+  const BoardKernel expensive{{"Toy", loops}, {0, 100}};
+  EXPECT_EQ(costs_of(seen, &expensive, 0).beyond_declared, 1);
+  EXPECT_FALSE(costs_of(seen, &expensive, 0).holds());
 }
 
 TEST(CostFit, MakesABoardOfEveryKernelOrNone) {
@@ -232,7 +232,7 @@ TEST(CostFit, PutsOneKernelsCostsIntoABoardAndLeavesTheOthersAlone) {
   old.provenance.inputs = 20;
   old.provenance.margin_percent = 5;
   old.kernels.push_back({{"Other", call}, {7}});
-  price(old);
+  compute_costs(old);
   Measurement measurement;
   measurement.build = "a build";
   measurement.machine = "a bench";

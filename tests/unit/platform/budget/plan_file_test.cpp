@@ -17,11 +17,11 @@ TaskModel bounded_model() {
     std::int64_t bound = 1'000;
     for (TaskNode& node : group.nodes) node.bound_ns = bound += 700;
   }
-  model.system.core_handover_ns = 300;
+  model.system.inter_core_delay_ns = 300;
   return model;
 }
 
-Plan plan_of(const TaskModel& model) {
+Plan schedule_of(const TaskModel& model) {
   Plan plan = synthesize(model);
   plan.graph_signature = graphs_signature(model);
   plan.board = "toy";
@@ -46,7 +46,7 @@ std::string refusal(const std::string& text) {
 
 // The schedule's text with its first `from` replaced.
 std::string edited(const std::string& from, const std::string& to) {
-  std::string text = plan_text(plan_of(bounded_model()), bounded_model());
+  std::string text = plan_text(schedule_of(bounded_model()), bounded_model());
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from << " in\n" << text;
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
@@ -54,7 +54,7 @@ std::string edited(const std::string& from, const std::string& to) {
 
 TEST(PlanFile, ReadsBackWhatItWrote) {
   const TaskModel model = bounded_model();
-  const Plan plan = plan_of(model);
+  const Plan plan = schedule_of(model);
   const Plan again = read(plan_text(plan, model), model);
   EXPECT_EQ(plan_text(again, model), plan_text(plan, model));
   EXPECT_TRUE(check_plan(again, model).empty());
@@ -87,7 +87,7 @@ TEST(PlanFile, KnowsTheTrackersOrderOfDataAndCopies) {
 
 TEST(PlanFile, ComputesTheStartsThatAPersonLeavesOut) {
   const TaskModel model = bounded_model();
-  const Plan plan = plan_of(model);
+  const Plan plan = schedule_of(model);
   std::string text = plan_text(plan, model);
   for (std::size_t at = text.find(", start_ns"); at != std::string::npos;
        at = text.find(", start_ns")) {
@@ -127,7 +127,7 @@ TEST(PlanFile, RefusesWhatDoesNotFitWithItsLineAndWhatWould) {
 }
 
 TEST(PlanFile, RefusesALeftOutNodeACycleAndAStartThatCannotBe) {
-  const std::string text = plan_text(plan_of(bounded_model()), bounded_model());
+  const std::string text = plan_text(schedule_of(bounded_model()), bounded_model());
   const auto line_with = [&](const std::string& what) {
     const std::size_t at = text.find(what);
     const std::size_t begin = text.rfind('\n', at) + 1;

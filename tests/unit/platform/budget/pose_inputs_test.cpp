@@ -15,7 +15,7 @@ namespace {
 
 using Kernels = std::vector<std::unique_ptr<MeasuredKernel>>;
 
-Kernels whole_kernels() {
+Kernels unsliced_kernels() {
   Kernels kernels;
   add_pose_kernels(kernels);
   add_output_kernels(kernels);
@@ -29,7 +29,7 @@ Kernels sliced_kernels() {
   return kernels;
 }
 Kernels all_kernels() {
-  Kernels kernels = whole_kernels();
+  Kernels kernels = unsliced_kernels();
   add_background_kernels(kernels);
   add_following_kernels(kernels);
   return kernels;
@@ -50,7 +50,7 @@ Limits one_tool() {
   limits.tools = 1;
   limits.markers_per_tool = 4;
   limits.lens_steps = k_lens_steps_max;
-  limits.background_steps = limits.reference_steps = 100;
+  limits.background_steps = limits.tracking_steps = 100;
   return limits;
 }
 
@@ -69,7 +69,7 @@ std::string shown(const MeasuredKernel& kernel, const graph::LoopCounts& counts)
 }
 
 TEST(PoseInputs, WorstDrivesEveryLoopToItsMaximum) {
-  for (const auto& kernel : whole_kernels()) {
+  for (const auto& kernel : unsliced_kernels()) {
     for (const Limits& limits : all_limits()) {
       kernel->set_input(InputKind::worst, 0, limits);
       kernel->rewind();

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-using test::complaint_about;
+using test::error_message_for;
 
 TEST(CellBackground, IsNoneWhereACellSaysNothing) {
   EXPECT_FALSE(default_cell().background);
@@ -32,7 +32,7 @@ TEST(CellBackground, TakesPeriodAndStepsAndGivesThemToTheLimits) {
 TEST(CellBackground, RefusesWhatIsOutOfRangeByItsLine) {
   const struct {
     const char* text;
-    const char* said;
+    const char* error_message;
   } cases[] = {
       {"period_ms = 0", "cell.toml:2: background.period_ms is 0; expected a number from 1 to 1000"},
       {"period_ms = 1001",
@@ -46,8 +46,8 @@ TEST(CellBackground, RefusesWhatIsOutOfRangeByItsLine) {
        "cell.toml:2: unknown key background.step; did you mean steps?; expected one of period_ms, "
        "steps"},
   };
-  for (const auto& [text, said] : cases) {
-    EXPECT_EQ(complaint_about("[background]\n" + std::string(text) + "\n"), said);
+  for (const auto& [text, error_message] : cases) {
+    EXPECT_EQ(error_message_for("[background]\n" + std::string(text) + "\n"), error_message);
   }
 }
 
@@ -60,7 +60,7 @@ TEST(CellMapping, HasABackgroundAndSettingsOfItsOwn) {
   ASSERT_TRUE(cell.mapping && cell.background);
   EXPECT_EQ(cell.mapping->source, "there/pictures");
   EXPECT_EQ(cell.mapping->period, milliseconds(40));
-  EXPECT_EQ(cell.mapping->pictures_a_map, 3);
+  EXPECT_EQ(cell.mapping->images_per_map, 3);
   EXPECT_EQ(cell.mapping->stride, 2);
   EXPECT_DOUBLE_EQ(cell.mapping->voxel_m, 0.02);
   EXPECT_EQ(cell.mapping->voxels_max, 5000);
@@ -69,17 +69,17 @@ TEST(CellMapping, HasABackgroundAndSettingsOfItsOwn) {
 }
 
 TEST(CellMapping, RefusesWhatIsMissingOrOutOfRangeByItsLine) {
-  EXPECT_EQ(complaint_about("[mapping]\nstride = 1\n"),
+  EXPECT_EQ(error_message_for("[mapping]\nstride = 1\n"),
             "cell.toml:1: [mapping] without a source; expected source = \"FOLDER\", of depth "
             "pictures with poses");
   const std::string source = "[mapping]\nsource = \"f\"\n";
-  EXPECT_EQ(complaint_about(source + "stride = 0\n"),
+  EXPECT_EQ(error_message_for(source + "stride = 0\n"),
             "cell.toml:3: mapping.stride is 0; expected a whole number from 1 to 64");
-  EXPECT_EQ(complaint_about(source + "voxel_mm = 0\n"),
+  EXPECT_EQ(error_message_for(source + "voxel_mm = 0\n"),
             "cell.toml:3: mapping.voxel_mm is 0; expected a number from 1 to 1000");
-  EXPECT_EQ(complaint_about(source + "joints_lost_after_ms = 0\n"),
+  EXPECT_EQ(error_message_for(source + "joints_lost_after_ms = 0\n"),
             "cell.toml:3: mapping.joints_lost_after_ms is 0; expected a number from 1 to 60000");
-  EXPECT_NE(complaint_about(source + "folder = 0\n").find("unknown key mapping.folder"),
+  EXPECT_NE(error_message_for(source + "folder = 0\n").find("unknown key mapping.folder"),
             std::string::npos);
 }
 

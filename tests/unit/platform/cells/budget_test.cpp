@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-using test::complaint_about;
+using test::error_message_for;
 
 TEST(CellBudget, FollowsTheCellsToolsAndCameraWhereNothingIsSaid) {
   const Limits limits = limits_of(cell_from_text("name = \"plain\"\n", "cell.toml"));
@@ -37,12 +37,13 @@ TEST(CellBudget, TakesTheProblemThatACellStates) {
 }
 
 TEST(CellBudget, RefusesMoreThanTheCodeCoversWithTheNearestThatFits) {
-  EXPECT_EQ(complaint_about("[budget]\ntools = 17\n"),
+  EXPECT_EQ(error_message_for("[budget]\ntools = 17\n"),
             "cell.toml:2: budget.tools is 17; expected a whole number from 1 to 16");
-  EXPECT_EQ(complaint_about("[budget]\n\nblobs = 300\n"),
+  EXPECT_EQ(error_message_for("[budget]\n\nblobs = 300\n"),
             "cell.toml:3: budget.blobs is 300; expected a whole number from 8 to 256");
   EXPECT_EQ(
-      complaint_about("[budget]\ntool = 1\n").rfind("cell.toml:2: unknown key budget.tool", 0), 0u);
+      error_message_for("[budget]\ntool = 1\n").rfind("cell.toml:2: unknown key budget.tool", 0),
+      0u);
 }
 
 TEST(CellBudget, RefusesALoopMaximumThatIsNoneWithTheRangeThatFits) {
@@ -59,16 +60,16 @@ TEST(CellBudget, RefusesALoopMaximumThatIsNoneWithTheRangeThatFits) {
         "; expected a whole number from " + std::to_string(least) + " to " + std::to_string(most);
     for (const std::string value :
          {"0", "-1", "-9223372036854775808", "7.5", "true", "\"many\"", "9223372036854775807"}) {
-      EXPECT_EQ(complaint_about("[budget]\n" + std::string(key) + " = " + value + "\n"),
+      EXPECT_EQ(error_message_for("[budget]\n" + std::string(key) + " = " + value + "\n"),
                 found + value + expected);
     }
     for (const int value : {least - 1, most + 1}) {
       const std::string text = std::to_string(value);
-      EXPECT_EQ(complaint_about("[budget]\n" + std::string(key) + " = " + text + "\n"),
+      EXPECT_EQ(error_message_for("[budget]\n" + std::string(key) + " = " + text + "\n"),
                 found + text + expected);
     }
     for (const int value : {least, most}) {
-      EXPECT_EQ(complaint_about("[budget]\n" + std::string(key) + " = " + std::to_string(value)),
+      EXPECT_EQ(error_message_for("[budget]\n" + std::string(key) + " = " + std::to_string(value)),
                 "accepted");
     }
   }
@@ -150,7 +151,7 @@ TEST(CellBudget, RefusesMoreToolsThanTheBudgetCovers) {
   }
   std::string many = "name = \"many\"\ntools = [";
   for (int i = 0; i < 17; ++i) many += "\"pen\",";
-  EXPECT_EQ(complaint_about(many + "]\n"), "cell.toml:2: 17 tools; expected at most 16");
+  EXPECT_EQ(error_message_for(many + "]\n"), "cell.toml:2: 17 tools; expected at most 16");
 }
 
 // Unprojection takes no step for a pinhole camera and six for AHAT.

@@ -33,7 +33,7 @@ Cell cell_with(const std::string& text, const std::map<std::string, std::string>
 }
 
 // Error message for a cell that names this one file.
-std::string complaint(const std::string& section, const std::string& text) {
+std::string error_message(const std::string& section, const std::string& text) {
   try {
     std::map<std::string, std::string> named{
         {"camera.depth_bias", text}, {"motion.file", text}, {"correction.file", text}};
@@ -115,7 +115,7 @@ TEST(CalibrationFiles, GiveACellItsMarkersCorrelatedErrors) {
                                 "poses = 900\n[uncertainty]\nslow_range_mm = 0.2\n"
                                 "slow_centroid_px = 0.01\nfast_share = 0.7\nfast_s = 0.4\n"
                                 "slow_s = 30\n"}});
-  EXPECT_DOUBLE_EQ(cell.camera.uncertainty.slow_range_m, 0.0002);
+  EXPECT_DOUBLE_EQ(cell.camera.uncertainty.correlated_range_m, 0.0002);
   EXPECT_DOUBLE_EQ(cell.camera.uncertainty.fast_share, 0.7);
   EXPECT_DOUBLE_EQ(cell.camera.correlation.slow_s, 30);
   EXPECT_EQ(cell.camera.uncertainty.range_offset_m, CameraUncertainty{}.range_offset_m);
@@ -137,8 +137,8 @@ TEST(CalibrationFiles, GiveACellItsCorrection) {
   const Cell cell =
       cell_with("[correction]\nfile = \"bias.toml\"\n", {{"correction.file", k_correction}});
   EXPECT_EQ(cell.correction.frame, CorrectionFrame::camera);
-  EXPECT_DOUBLE_EQ(cell.correction.shift_m.y(), -0.002);
-  EXPECT_NEAR(cell.correction.turn_rad.y(), 1.5707963267948966, 1e-15);
+  EXPECT_DOUBLE_EQ(cell.correction.translation_m.y(), -0.002);
+  EXPECT_NEAR(cell.correction.rotation_rad.y(), 1.5707963267948966, 1e-15);
   EXPECT_DOUBLE_EQ(cell.correction.range_m.from, 0.4);
   EXPECT_NEAR(cell.correction.off_axis_cosine.from, 0.5, 1e-15);
   EXPECT_EQ(cell.correction.off_axis_cosine.to, 1.0);
@@ -155,32 +155,32 @@ TEST(CalibrationFiles, AreNotNeeded) {
 
 TEST(CalibrationFiles, AreRefusedWithTheirPlace) {
   const std::string camera = "[camera]\nfile = \"camera.toml\"";
-  EXPECT_EQ(complaint(camera, without(k_lens, "fx_px")),
+  EXPECT_EQ(error_message(camera, without(k_lens, "fx_px")),
             "camera.toml:2: camera.fx_px is missing; expected a number");
-  EXPECT_EQ(complaint(camera, k_lens + "skew = 1\n").substr(0, 44),
+  EXPECT_EQ(error_message(camera, k_lens + "skew = 1\n").substr(0, 44),
             "camera.toml:12: unknown key camera.skew; exp");
-  EXPECT_EQ(complaint(camera, "lens = 1\n"),
+  EXPECT_EQ(error_message(camera, "lens = 1\n"),
             "camera.toml:1: no table [camera]; expected a file of `glint calibrate camera`");
   std::string small = k_lens;
   small.replace(small.find("width = 512"), 11, "width = 448");
-  EXPECT_EQ(complaint(camera, small),
+  EXPECT_EQ(error_message(camera, small),
             "camera.toml:4: camera has 448 x 512 pixels; expected 512 x 512, as the cell's "
             "camera.model");
   std::string nan = k_motion;
   nan.replace(nan.find("3.5"), 3, "nan");
-  EXPECT_NE(complaint("[motion]\nfile = \"motion.toml\"", nan)
+  EXPECT_NE(error_message("[motion]\nfile = \"motion.toml\"", nan)
                 .find("motion.toml:2: motion.linear_noise_m2_s5 is nan; expected a number"),
             std::string::npos);
-  EXPECT_EQ(complaint("[motion]\nfile = \"motion.toml\"", without(k_motion, "angular_damping")),
+  EXPECT_EQ(error_message("[motion]\nfile = \"motion.toml\"", without(k_motion, "angular_damping")),
             "motion.toml:1: motion.angular_damping_1_s is missing; expected a number");
   std::string turned = k_correction;
   turned.replace(turned.find("[90, 120]"), 9, "[120, 90]");
-  EXPECT_EQ(complaint("[correction]\nfile = \"bias.toml\"", turned),
+  EXPECT_EQ(error_message("[correction]\nfile = \"bias.toml\"", turned),
             "bias.toml:7: correction.tilt_deg is no range; expected [from, to] within 0 and 180");
-  EXPECT_EQ(complaint("[camera]\ndepth_bias = \"depth.toml\"", "[depth_bias]\noffset_mm = 1\n"),
+  EXPECT_EQ(error_message("[camera]\ndepth_bias = \"depth.toml\"", "[depth_bias]\noffset_mm = 1\n"),
             "depth.toml:1: depth_bias.range_mm is missing; expected [from, to], the ranges it was "
             "measured at");
-  EXPECT_NE(complaint("[camera]\nfile = \"c.toml\"\nray_table = \"r.npy\"", k_lens)
+  EXPECT_NE(error_message("[camera]\nfile = \"c.toml\"\nray_table = \"r.npy\"", k_lens)
                 .find("cell.toml:2: camera.file beside camera.ray_table"),
             std::string::npos);
 }

@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-using test::complaint_about;
+using test::error_message_for;
 
 constexpr const char* k_generic =
     "[camera]\nmodel = \"generic\"\nwidth = 4\nheight = 2\nthreshold = 100\n";
@@ -67,9 +67,9 @@ TEST(CellCamera, StatesTheUncertaintyOfItsCalibration) {
   EXPECT_DOUBLE_EQ(stated.range_scale, 0.002);
   EXPECT_DOUBLE_EQ(stated.principal_point_px, 0.4);
   EXPECT_DOUBLE_EQ(stated.focal_scale, 0.0005);
-  EXPECT_DOUBLE_EQ(stated.slow_range_m, 0.0003);
-  EXPECT_DOUBLE_EQ(stated.slow_centroid_px, 0.02);
-  EXPECT_DOUBLE_EQ(stated.stamp_s, 0.001);
+  EXPECT_DOUBLE_EQ(stated.correlated_range_m, 0.0003);
+  EXPECT_DOUBLE_EQ(stated.correlated_centroid_px, 0.02);
+  EXPECT_DOUBLE_EQ(stated.time_stamp_s, 0.001);
   EXPECT_THROW((void)cell_from_text("[camera.uncertainty]\nrange_scale = -1\n", "c"), InputError);
   EXPECT_THROW((void)cell_from_text("[camera.uncertainty]\nfocal = 0.1\n", "c"), InputError);
 }
@@ -157,7 +157,8 @@ TEST(CellCamera, RefusesWhatNoCameraHas) {
         std::pair{"[camera]\nrange_mm = [900, 200]\n", "no range"},
         std::pair{"[camera]\nwidth = 1025\n", "1024"},
         std::pair{"[camera]\nperiod_ms = 0\n", "period_ms"}}) {
-    EXPECT_NE(complaint_about(text).find(part), std::string::npos) << text << complaint_about(text);
+    EXPECT_NE(error_message_for(text).find(part), std::string::npos)
+        << text << error_message_for(text);
   }
 }
 
@@ -208,11 +209,11 @@ TEST(CellSource, ReadsItsKeysAndRefusesThoseOfAnotherKind) {
   EXPECT_EQ(cell.source.camera_info_topic, "/i");
   EXPECT_EQ(cell.source.pose_topic, "/p");
   EXPECT_EQ(cell.source.world_frame, "map");
-  const std::string why = complaint_about("[source]\nkind = \"folder\"\npose_topic = \"/p\"\n");
+  const std::string why = error_message_for("[source]\nkind = \"folder\"\npose_topic = \"/p\"\n");
   EXPECT_NE(why.find("cell.toml:3: source.pose_topic: of a source of kind dds or rosbag"),
             std::string::npos)
       << why;
-  EXPECT_NE(complaint_about("[source]\nkind = \"rosbag\"\ncalibration = \"c\"\n")
+  EXPECT_NE(error_message_for("[source]\nkind = \"rosbag\"\ncalibration = \"c\"\n")
                 .find("source.calibration"),
             std::string::npos);
 }

@@ -25,20 +25,20 @@ TEST(CellCan, RefusesAnIdentifierOfButtonsWithWhichItSends) {
   const std::string expected =
       ", with which Glint sends; expected none of 0x1A0 to 0x1AF, 0xA0 and 0x720";
   for (const char* const taken : {"0x1A0", "0x1A4", "0x1AE", "0x1AF", "0xA0", "0x720"}) {
-    EXPECT_EQ(test::complaint_about("[can]\nbuttons = " + std::string(taken) + "\n"),
+    EXPECT_EQ(test::error_message_for("[can]\nbuttons = " + std::string(taken) + "\n"),
               "cell.toml:2: can.buttons is " + std::string(taken) + expected);
   }
   // Each tool has 16 identifiers, from the cell's base identifier on.
   const std::string two = "tools = [\"pen\", \"board\"]\n[can]\n";
-  EXPECT_EQ(test::complaint_about(two + "buttons = 0x1BF\n"),
+  EXPECT_EQ(test::error_message_for(two + "buttons = 0x1BF\n"),
             "cell.toml:3: can.buttons is 0x1BF, with which Glint sends; expected none of 0x1A0 to "
             "0x1BF, 0xA0 and 0x720");
-  EXPECT_EQ(test::complaint_about(two + "base_id = 0x200\nbuttons = 0x1BF\n"), "accepted");
+  EXPECT_EQ(test::error_message_for(two + "base_id = 0x200\nbuttons = 0x1BF\n"), "accepted");
 }
 
 TEST(CellCan, RefusesAnIdentifierOfButtonsBeyondElevenBits) {
   for (const char* const wrong : {"0", "-1", "2048", "\"0x190\""}) {
-    EXPECT_EQ(test::complaint_about("[can]\nbuttons = " + std::string(wrong) + "\n"),
+    EXPECT_EQ(test::error_message_for("[can]\nbuttons = " + std::string(wrong) + "\n"),
               "cell.toml:2: can.buttons is " + std::string(wrong) +
                   "; expected a whole number from 1 to 2047");
   }

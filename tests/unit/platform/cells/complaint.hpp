@@ -9,7 +9,7 @@
 namespace glint::test {
 
 // Returns the error message, or "accepted" if the reader accepts the text.
-inline std::string complaint_about(const std::string& text) {
+inline std::string error_message_for(const std::string& text) {
   try {
     (void)cell_from_text(text, "cell.toml");
     return "accepted";

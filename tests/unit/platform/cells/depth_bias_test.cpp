@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-using test::complaint_about;
+using test::error_message_for;
 
 TEST(CellDepthBias, IsReadInMetres) {
   const Cell cell = cell_from_text(
@@ -18,7 +18,7 @@ TEST(CellDepthBias, IsReadInMetres) {
   const DepthBias& bias = cell.camera.depth.bias;
   EXPECT_DOUBLE_EQ(bias.offset_m, 0.003);
   EXPECT_DOUBLE_EQ(bias.per_metre, -0.01);
-  EXPECT_DOUBLE_EQ(bias.dim_m, 0.0005);
+  EXPECT_DOUBLE_EQ(bias.low_signal_m, 0.0005);
   EXPECT_DOUBLE_EQ(bias.range_min_m, 0.25);
   EXPECT_DOUBLE_EQ(bias.range_max_m, 0.9);
 }
@@ -28,17 +28,18 @@ TEST(CellDepthBias, IsNoneWhereNothingIsSaid) {
 }
 
 TEST(CellDepthBias, NeedsTheRangesItWasMeasuredAt) {
-  EXPECT_EQ(complaint_about("name = \"a\"\n[camera.depth_bias]\noffset_mm = 3\n"),
+  EXPECT_EQ(error_message_for("name = \"a\"\n[camera.depth_bias]\noffset_mm = 3\n"),
             "cell.toml:2: camera.depth_bias.range_mm is missing; expected [from, to], the ranges "
             "it was measured at");
-  EXPECT_EQ(complaint_about("[camera.depth_bias]\nrange_mm = [900, 250]\n"),
+  EXPECT_EQ(error_message_for("[camera.depth_bias]\nrange_mm = [900, 250]\n"),
             "cell.toml:2: camera.depth_bias.range_mm is no range; expected [from, to], the ranges "
             "it was measured at");
-  EXPECT_NE(complaint_about("[camera.depth_bias]\noffset_mm = 3000\nrange_mm = [1, 2]\n")
+  EXPECT_NE(error_message_for("[camera.depth_bias]\noffset_mm = 3000\nrange_mm = [1, 2]\n")
                 .find("cell.toml:2: camera.depth_bias.offset_mm"),
             std::string::npos);
-  EXPECT_NE(complaint_about("[camera.depth_bias]\noffset = 3\nrange_mm = [1, 2]\n").find("offset"),
-            std::string::npos);
+  EXPECT_NE(
+      error_message_for("[camera.depth_bias]\noffset = 3\nrange_mm = [1, 2]\n").find("offset"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-using test::complaint_about;
+using test::error_message_for;
 
 TEST(CellReference, IsOneOfTheListedToolsByName) {
   const Cell cell = cell_from_text(
@@ -17,18 +17,18 @@ TEST(CellReference, IsOneOfTheListedToolsByName) {
       "cell.toml");
   EXPECT_EQ(cell.reference, 1);
   EXPECT_TRUE(cell.robot_in_reference);
-  EXPECT_TRUE(cell.notices.empty()) << cell.notices.front();
+  EXPECT_TRUE(cell.warnings.empty()) << cell.warnings.front();
   EXPECT_EQ(default_cell().reference, -1);
   EXPECT_FALSE(default_cell().robot_in_reference);
 }
 
 TEST(CellReference, MustBeListed) {
-  EXPECT_EQ(complaint_about("tools = [\"pen\"]\nreference = \"board\"\n"),
+  EXPECT_EQ(error_message_for("tools = [\"pen\"]\nreference = \"board\"\n"),
             "cell.toml:2: reference is \"board\"; expected the name of a listed tool: pen");
 }
 
 TEST(CellReference, IsNeededForARobotThatIsGivenInItsFrame) {
-  EXPECT_EQ(complaint_about("[robot]\nframe = \"reference\"\n"),
+  EXPECT_EQ(error_message_for("[robot]\nframe = \"reference\"\n"),
             "cell.toml:2: robot.frame is \"reference\", but no tool is the reference; expected "
             "reference = \"NAME\" at the top, a listed tool that does not move");
 }
@@ -44,7 +44,7 @@ TEST(CellHeadset, IsReadInMetresAndRadians) {
   EXPECT_DOUBLE_EQ(noise.angle_per_turn_s, 0.005);
   EXPECT_DOUBLE_EQ(noise.pivot_m, 0.7);
   EXPECT_DOUBLE_EQ(noise.motion_correlation_s, usual.motion_correlation_s);
-  EXPECT_NE(complaint_about("[headset]\nrest_mm = -1\n").find("cell.toml:2: headset.rest_mm"),
+  EXPECT_NE(error_message_for("[headset]\nrest_mm = -1\n").find("cell.toml:2: headset.rest_mm"),
             std::string::npos);
 }
 

@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-using test::complaint_about;
+using test::error_message_for;
 using test::expect_input_error;
 
 // toml++ 3.3.0: assertion failure without NDEBUG, undefined behaviour in clang's release build.
@@ -60,14 +60,14 @@ TEST(TomlReader, TakesDotsThatAreNoKeys) {
 }
 
 TEST(TomlReader, ShowsNoControlCharactersOfTheFile) {
-  const std::string complaint = complaint_about("tools = \"\\u001b[2J\"\n");
-  EXPECT_NE(complaint, "accepted");
-  EXPECT_EQ(complaint.find('\x1b'), std::string::npos) << complaint;
-  EXPECT_EQ(complaint_about("\"\\u001b]0;x\\u0007\" = 1\n").find('\x1b'), std::string::npos);
+  const std::string message = error_message_for("tools = \"\\u001b[2J\"\n");
+  EXPECT_NE(message, "accepted");
+  EXPECT_EQ(message.find('\x1b'), std::string::npos) << message;
+  EXPECT_EQ(error_message_for("\"\\u001b]0;x\\u0007\" = 1\n").find('\x1b'), std::string::npos);
 }
 
 TEST(TomlReader, RefusesATextThatIsNotPrintable) {
-  EXPECT_NE(complaint_about("[dds]\ninterface = \"l\\u001bo\"\n").find("printable"),
+  EXPECT_NE(error_message_for("[dds]\ninterface = \"l\\u001bo\"\n").find("printable"),
             std::string::npos);
 }
 

@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-using test::complaint_about;
+using test::error_message_for;
 
 const char* const k_two = "tools = [\"pen\", \"board\"]\n";
 
@@ -20,8 +20,8 @@ TEST(ToolChanges, AreReadInTheirOrder) {
   EXPECT_EQ(cell.tools_at_start & 3, 1);
   ASSERT_EQ(cell.tool_changes.size(), 2u);
   EXPECT_EQ(cell.tool_changes[0].at.nanoseconds, 1'500'000'000);
-  EXPECT_EQ(cell.tool_changes[0].now_there & 3, 3);
-  EXPECT_EQ(cell.tool_changes[1].now_there & 3, 2);
+  EXPECT_EQ(cell.tool_changes[0].present & 3, 3);
+  EXPECT_EQ(cell.tool_changes[1].present & 3, 2);
   EXPECT_EQ(default_cell().tools_at_start, k_all_tools);
 }
 
@@ -35,18 +35,18 @@ TEST(ToolChanges, LeaveThePlaceOfAToolEmptyAndTheOthersWhereTheyAre) {
 }
 
 TEST(ToolChanges, AreRefusedByNameAndLine) {
-  EXPECT_EQ(complaint_about(std::string(k_two) + "absent = [\"hammer\"]\n"),
+  EXPECT_EQ(error_message_for(std::string(k_two) + "absent = [\"hammer\"]\n"),
             "cell.toml:2: absent: no tool is named \"hammer\"; expected the name of a listed tool: "
             "pen, board");
   EXPECT_EQ(
-      complaint_about(std::string(k_two) + "[[tool_change]]\nat_s = 1\nadd = \"pen\"\n"),
+      error_message_for(std::string(k_two) + "[[tool_change]]\nat_s = 1\nadd = \"pen\"\n"),
       "cell.toml:3: tool_change: \"pen\" is there already; expected a change of what is there "
       "at that time");
   EXPECT_EQ(
-      complaint_about(std::string(k_two) + "[[tool_change]]\nat_s = 1\n"),
+      error_message_for(std::string(k_two) + "[[tool_change]]\nat_s = 1\n"),
       "cell.toml:3: tool_change changes nothing; expected add = \"NAME\" or remove = \"NAME\"");
-  EXPECT_EQ(complaint_about(std::string(k_two) + "[[tool_change]]\nat_s = 2\nremove = \"pen\"\n"
-                                                 "[[tool_change]]\nat_s = 2\nadd = \"pen\"\n"),
+  EXPECT_EQ(error_message_for(std::string(k_two) + "[[tool_change]]\nat_s = 2\nremove = \"pen\"\n"
+                                                   "[[tool_change]]\nat_s = 2\nadd = \"pen\"\n"),
             "cell.toml:6: tool_change: at_s is not later than the one before; expected times that "
             "rise from 0 on");
 }

@@ -21,9 +21,9 @@
 namespace glint {
 namespace {
 
-using test::odd_tool;
+using test::asymmetric_tool;
+using test::permuted_tool;
 using test::random_tool;
-using test::redrawn;
 using test::set_of;
 using test::tool_of;
 
@@ -59,9 +59,9 @@ double nearest_of_all_m(const Tool& a, const Tool& b, int wanted) {
   return least * std::sqrt(static_cast<double>(wanted));
 }
 
-const Likeness* likeness_of(const Distinction& found, int one, int other) {
-  for (const Likeness& likeness : found.likenesses) {
-    if (std::set{likeness.seen, likeness.other} == std::set{one, other}) return &likeness;
+const WrongLabeling* labeling_between(const Distinction& found, int one, int other) {
+  for (const WrongLabeling& labeling : found.wrong_labelings) {
+    if (std::set{labeling.seen, labeling.other} == std::set{one, other}) return &labeling;
   }
   return nullptr;
 }
@@ -75,17 +75,17 @@ TEST(ToolDistinction, FindsWhatTryingAllLabelingsFinds) {
                                 random_tool(random, 3 + random.below(3), 0.06)});
     const Distinction found = distinguish(set, without_limit());
     const Distinction near = distinguish(set, {});
-    ASSERT_EQ(found.likenesses.size(), 6u);
-    for (const Likeness& likeness : found.likenesses) {
-      const Tool& seen = set.items[static_cast<std::size_t>(likeness.seen)];
-      const Tool& other = set.items[static_cast<std::size_t>(likeness.other)];
+    ASSERT_EQ(found.wrong_labelings.size(), 6u);
+    for (const WrongLabeling& labeling : found.wrong_labelings) {
+      const Tool& seen = set.items[static_cast<std::size_t>(labeling.seen)];
+      const Tool& other = set.items[static_cast<std::size_t>(labeling.other)];
       const int wanted = &seen == &other ? seen.marker_count : std::min(4, other.marker_count);
       const double expected = nearest_of_all_m(seen, other, wanted) / 0.0015;
-      EXPECT_NEAR(likeness.distance_sigmas, expected, 1e-5 + 1e-9 * expected);
-      EXPECT_EQ(likeness.markers, wanted);
-      EXPECT_FALSE(likeness.search_full);
+      EXPECT_NEAR(labeling.distance_sigmas, expected, 1e-5 + 1e-9 * expected);
+      EXPECT_EQ(labeling.markers, wanted);
+      EXPECT_FALSE(labeling.steps_exhausted);
       ++compared;
-      const Likeness* const nearer = likeness_of(near, likeness.seen, likeness.other);
+      const WrongLabeling* const nearer = labeling_between(near, labeling.seen, labeling.other);
       EXPECT_EQ(nearer != nullptr, expected < k_distinct_sigmas) << expected;
       if (nearer == nullptr) continue;
       EXPECT_NEAR(nearer->distance_sigmas, expected, 1e-5);
@@ -100,8 +100,8 @@ TEST(ToolDistinction, SaysHowOftenNoiseMakesTheWrongLabelingFitBetter) {
   // Planar, and nearly symmetric under a rotation by pi.
   const Tool tool = tool_of({{-40, 0, 0}, {40, 0, 0}, {3, 55, 0}, {0, 20, 0}});
   const Distinction found = distinguish(set_of({tool}), {});
-  ASSERT_EQ(found.likenesses.size(), 1u);
-  const Likeness& likeness = found.likenesses[0];
+  ASSERT_EQ(found.wrong_labelings.size(), 1u);
+  const WrongLabeling& labeling = found.wrong_labelings[0];
   test::Random random(7);
   constexpr int frames = 40'000;
   int wrong = 0;
@@ -109,27 +109,28 @@ TEST(ToolDistinction, SaysHowOftenNoiseMakesTheWrongLabelingFitBetter) {
     std::vector<Vector3> measured, renamed;
     for (std::size_t i = 0; i < 4; ++i) {
       measured.push_back(tool.markers_m[i] + random.vector(0.0015));
-      renamed.push_back(tool.markers_m[static_cast<std::size_t>(likeness.taken_for[i])]);
+      renamed.push_back(tool.markers_m[static_cast<std::size_t>(labeling.assignment[i])]);
     }
     const double right_m = fit_rigid(std::span(tool.markers_m.data(), 4), measured).rms_m;
     if (fit_rigid(renamed, measured).rms_m < right_m) ++wrong;
   }
   const double share = static_cast<double>(wrong) / frames;
-  std::printf("  %.2f sigma: %.4f of frames, predicted %.4f\n", likeness.distance_sigmas, share,
-              wrong_share(likeness.distance_sigmas));
+  std::printf("  %.2f sigma: %.4f of frames, predicted %.4f\n", labeling.distance_sigmas, share,
+              error_probability(labeling.distance_sigmas));
   ASSERT_GT(wrong, 400);
-  EXPECT_NEAR(share / wrong_share(likeness.distance_sigmas), 1, 0.1);
+  EXPECT_NEAR(share / error_probability(labeling.distance_sigmas), 1, 0.1);
 }
 
 TEST(ToolDistinction, FindsEqualToolsHoweverTheyLieAndAreNumbered) {
   const Pose moved{Quaternion(0.5, 0.1, -0.7, 0.2).normalized(), Vector3(0.3, -0.2, 0.1)};
   const ToolSet set = set_of(
-      {odd_tool(), redrawn(odd_tool(), [&](const Vector3& point) { return moved * point; })});
+      {asymmetric_tool(),
+       permuted_tool(asymmetric_tool(), [&](const Vector3& point) { return moved * point; })});
   const Distinction found = distinguish(set, {});
-  ASSERT_EQ(found.likenesses.size(), 1u);
-  EXPECT_LT(found.likenesses[0].distance_sigmas, 1e-4);
+  ASSERT_EQ(found.wrong_labelings.size(), 1u);
+  EXPECT_LT(found.wrong_labelings[0].distance_sigmas, 1e-4);
   for (std::size_t i = 0; i < 5; ++i) {
-    const int name = found.likenesses[0].taken_for[i];
+    const int name = found.wrong_labelings[0].assignment[i];
     if (name >= 0) {
       EXPECT_EQ(name, 4 - static_cast<int>(i));
     }
@@ -141,23 +142,24 @@ TEST(ToolDistinction, TellsAToolFromItsMirrorImageUnlessItIsFlat) {
     return Vector3(-point.x(), point.y(), point.z());
   };
   EXPECT_TRUE(
-      distinguish(set_of({odd_tool(), redrawn(odd_tool(), mirrored)}), {}).likenesses.empty());
+      distinguish(set_of({asymmetric_tool(), permuted_tool(asymmetric_tool(), mirrored)}), {})
+          .wrong_labelings.empty());
   const Tool flat = tool_of({{0, 0, 0}, {70, 5, 0}, {20, 90, 0}, {110, 60, 0}});
-  const Distinction found = distinguish(set_of({flat, redrawn(flat, mirrored)}), {});
-  ASSERT_NE(likeness_of(found, 0, 1), nullptr);
-  EXPECT_LT(likeness_of(found, 0, 1)->distance_sigmas, 1e-4);
+  const Distinction found = distinguish(set_of({flat, permuted_tool(flat, mirrored)}), {});
+  ASSERT_NE(labeling_between(found, 0, 1), nullptr);
+  EXPECT_LT(labeling_between(found, 0, 1)->distance_sigmas, 1e-4);
 }
 
 TEST(ToolDistinction, FindsAToolOfThreeMarkersWithinALargerOneNotTheOtherWayRound) {
-  const Tool large = odd_tool();
+  const Tool large = asymmetric_tool();
   const Tool three = tool_of({{-40, 45, 115}, {45, 45, 240}, {22, 24, 129}});
   for (const ToolSet& set : {set_of({large, three}), set_of({three, large})}) {
     const Distinction found = distinguish(set, {});
-    ASSERT_EQ(found.likenesses.size(), 1u);
-    const Likeness& likeness = found.likenesses[0];
-    EXPECT_EQ(set.items[static_cast<std::size_t>(likeness.other)].marker_count, 3);
-    EXPECT_EQ(likeness.markers, 3);
-    EXPECT_EQ(likeness.taken_for, (TakenFor{-1, 0, 1, -1, 2, -1, -1, -1}));
+    ASSERT_EQ(found.wrong_labelings.size(), 1u);
+    const WrongLabeling& labeling = found.wrong_labelings[0];
+    EXPECT_EQ(set.items[static_cast<std::size_t>(labeling.other)].marker_count, 3);
+    EXPECT_EQ(labeling.markers, 3);
+    EXPECT_EQ(labeling.assignment, (MarkerAssignment{-1, 0, 1, -1, 2, -1, -1, -1}));
   }
 }
 
@@ -166,10 +168,10 @@ TEST(ToolDistinction, SeesMarkersOnALineThatNearlyFitATriangle) {
   const Tool ruled = tool_of({{0, 0, 0}, {40, 0, 0}, {100, 0, 0}, {130, 80, 30}});
   const Tool bent = tool_of({{0, 0, 0}, {40, 3, 0}, {100, 0, 0}});
   const Distinction found = distinguish(set_of({ruled, bent}), {});
-  ASSERT_NE(likeness_of(found, 0, 1), nullptr);
+  ASSERT_NE(labeling_between(found, 0, 1), nullptr);
   // The residual of the smaller tool's markers to the best line is 2.4 mm.
-  EXPECT_GT(likeness_of(found, 0, 1)->distance_sigmas, 1.0);
-  EXPECT_LT(likeness_of(found, 0, 1)->distance_sigmas, 2.0);
+  EXPECT_GT(labeling_between(found, 0, 1)->distance_sigmas, 1.0);
+  EXPECT_LT(labeling_between(found, 0, 1)->distance_sigmas, 2.0);
 }
 
 TEST(ToolDistinction, PassesOverMarkersOnALineWhichTheTrackersFitRefuses) {
@@ -177,10 +179,10 @@ TEST(ToolDistinction, PassesOverMarkersOnALineWhichTheTrackersFitRefuses) {
   const Tool second = tool_of({{0, 0, 0}, {40, 0, 0}, {100, 0, 0}, {130, 0, 0}, {90, 0, 75}});
   const ToolSet set = set_of({first, second});
   const Distinction found = distinguish(set, without_limit());
-  ASSERT_NE(likeness_of(found, 0, 1), nullptr);
-  EXPECT_NEAR(likeness_of(found, 0, 1)->distance_sigmas,
+  ASSERT_NE(labeling_between(found, 0, 1), nullptr);
+  EXPECT_NEAR(labeling_between(found, 0, 1)->distance_sigmas,
               nearest_of_all_m(set.items[0], set.items[1], 4) / 0.0015, 1e-5);
-  EXPECT_GT(likeness_of(found, 0, 1)->distance_sigmas, k_distinct_sigmas);
+  EXPECT_GT(labeling_between(found, 0, 1)->distance_sigmas, k_distinct_sigmas);
 }
 
 // The corners of a cube. Two cubes of similar size have many near labelings.
@@ -199,11 +201,12 @@ TEST(ToolDistinction, StopsAtItsStepsAndSaysSo) {
   DistinctionSettings settings;
   settings.steps_max = 20;
   const Distinction cut = distinguish(set_of({cube_of(60), cube_of(66)}), settings);
-  ASSERT_EQ(cut.likenesses.size(), 3u);
-  for (const Likeness& likeness : cut.likenesses) EXPECT_TRUE(likeness.search_full);
-  EXPECT_LE(cut.steps_most, 20);
+  ASSERT_EQ(cut.wrong_labelings.size(), 3u);
+  for (const WrongLabeling& labeling : cut.wrong_labelings) EXPECT_TRUE(labeling.steps_exhausted);
+  EXPECT_LE(cut.steps_max_used, 20);
   const Distinction whole = distinguish(set_of({cube_of(60), cube_of(66)}), {});
-  for (const Likeness& likeness : whole.likenesses) EXPECT_FALSE(likeness.search_full);
+  for (const WrongLabeling& labeling : whole.wrong_labelings)
+    EXPECT_FALSE(labeling.steps_exhausted);
 }
 
 // Prints the elapsed time; only the steps are tested, the time is not.
@@ -212,7 +215,7 @@ Distinction timed(const char* name, const ToolSet& set, const DistinctionSetting
   Distinction found = distinguish(set, settings);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   std::printf("  %-14s %.3f s, at most %lld steps for a pair\n", name, took.count(),
-              static_cast<long long>(found.steps_most));
+              static_cast<long long>(found.steps_max_used));
   return found;
 }
 
@@ -223,16 +226,17 @@ TEST(ToolDistinction, OfSixteenToolsOfEightMarkersEndsWithinItsSteps) {
   for (std::size_t t = 0; t < k_tools_max; ++t) {
     drawn.items[t] = random_tool(random, k_markers_per_tool_max, 0.15);
     cubes.items[t] = cube_of(50 + 2 * static_cast<double>(t));
-    bent_cubes.items[t] = redrawn(
+    bent_cubes.items[t] = permuted_tool(
         cube_of(60), [&](const Vector3& point) { return Vector3(point + random.vector(0.003)); });
   }
   const Distinction usual = timed("random", drawn);
-  EXPECT_LE(usual.steps_most, DistinctionSettings{}.steps_max / 10);
-  for (const Likeness& likeness : usual.likenesses) EXPECT_FALSE(likeness.search_full);
+  EXPECT_LE(usual.steps_max_used, DistinctionSettings{}.steps_max / 10);
+  for (const WrongLabeling& labeling : usual.wrong_labelings)
+    EXPECT_FALSE(labeling.steps_exhausted);
   for (const Distinction& alike : {timed("cubes", cubes), timed("bent cubes", bent_cubes),
                                    timed("without limit", drawn, without_limit())}) {
-    EXPECT_LE(alike.steps_most, DistinctionSettings{}.steps_max);
-    EXPECT_GE(alike.likenesses.size(), static_cast<std::size_t>(k_tools_max));
+    EXPECT_LE(alike.steps_max_used, DistinctionSettings{}.steps_max);
+    EXPECT_GE(alike.wrong_labelings.size(), static_cast<std::size_t>(k_tools_max));
   }
 }
 
@@ -255,16 +259,16 @@ TEST(ToolDistinction, OfRealToolsIsListed) {
     set.items[static_cast<std::size_t>(set.count++)] = load_tool(file.string());
   }
   const Distinction found = distinguish(set, without_limit());
-  for (const Likeness& likeness : found.likenesses) {
-    const Tool& seen = set.items[static_cast<std::size_t>(likeness.seen)];
-    const Tool& other = set.items[static_cast<std::size_t>(likeness.other)];
+  for (const WrongLabeling& labeling : found.wrong_labelings) {
+    const Tool& seen = set.items[static_cast<std::size_t>(labeling.seen)];
+    const Tool& other = set.items[static_cast<std::size_t>(labeling.other)];
     std::printf("  %-8s %-8s %6.2f sigma, %.2g of frames\n", seen.name.data(),
-                &seen == &other ? "itself" : other.name.data(), likeness.distance_sigmas,
-                wrong_share(likeness.distance_sigmas));
+                &seen == &other ? "itself" : other.name.data(), labeling.distance_sigmas,
+                error_probability(labeling.distance_sigmas));
     const int wanted = &seen == &other ? seen.marker_count : std::min(4, other.marker_count);
-    EXPECT_NEAR(likeness.distance_sigmas, nearest_of_all_m(seen, other, wanted) / 0.0015, 1e-5);
+    EXPECT_NEAR(labeling.distance_sigmas, nearest_of_all_m(seen, other, wanted) / 0.0015, 1e-5);
   }
-  EXPECT_EQ(static_cast<int>(found.likenesses.size()), set.count * (set.count + 1) / 2);
+  EXPECT_EQ(static_cast<int>(found.wrong_labelings.size()), set.count * (set.count + 1) / 2);
 }
 
 }  // namespace

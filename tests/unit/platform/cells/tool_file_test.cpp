@@ -37,7 +37,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 template <class Reader>
-std::string complaint_of(Reader&& read) {
+std::string error_message_of(Reader&& read) {
   try {
     const Tool tool = read();
     return std::string("accepted ") + tool.name.data();
@@ -47,7 +47,7 @@ std::string complaint_of(Reader&& read) {
 }
 
 std::string toml_complaint(const std::string& text) {
-  return complaint_of([&] { return tool_from_toml_text(text, "tool.toml"); });
+  return error_message_of([&] { return tool_from_toml_text(text, "tool.toml"); });
 }
 
 TEST(ToolFile, ReadsEveryKeyOfItsOwnFormat) {
@@ -136,7 +136,7 @@ const std::string k_ini =
     "[pivot]\r\nx=0\r\ny=0\r\nz=-150\r\n";
 
 std::string ini_complaint(const std::string& text) {
-  return complaint_of([&] { return tool_from_ini_text(text, "folder/arm.ini"); });
+  return error_message_of([&] { return tool_from_ini_text(text, "folder/arm.ini"); });
 }
 
 TEST(ToolFile, ReadsAnAtracsysGeometry) {
@@ -198,7 +198,7 @@ std::string rom_of(const std::vector<std::array<float, 3>>& markers_mm) {
 }
 
 std::string rom_complaint(const std::string& bytes) {
-  return complaint_of([&] { return tool_from_rom_bytes(bytes, "tool.rom"); });
+  return error_message_of([&] { return tool_from_rom_bytes(bytes, "tool.rom"); });
 }
 
 TEST(ToolFile, ReadsAnNdiToolDefinition) {
@@ -245,10 +245,11 @@ TEST(ToolFile, IsToldApartByItsEnding) {
   EXPECT_STREQ(load_tool(folder + "a.toml").name.data(), "probe");
   EXPECT_STREQ(load_tool(folder + "b.ini").name.data(), "b");
   EXPECT_STREQ(load_tool(folder + "c.rom").name.data(), "c");
-  EXPECT_NE(complaint_of([&] { return load_tool(folder + "d.toml"); }).find("is no file"),
+  EXPECT_NE(error_message_of([&] { return load_tool(folder + "d.toml"); }).find("is no file"),
             std::string::npos);
-  EXPECT_NE(complaint_of([&] { return load_tool(folder + "a.json"); }).find(".toml, .rom or .ini"),
-            std::string::npos);
+  EXPECT_NE(
+      error_message_of([&] { return load_tool(folder + "a.json"); }).find(".toml, .rom or .ini"),
+      std::string::npos);
   std::filesystem::remove_all(folder);
 }
 

@@ -36,7 +36,7 @@ TEST(ToolWriter, KeepsAToolsOwnDepthBias) {
   const Tool read = tool_from_toml_text(tool_toml_text(tool, ""), "written.toml");
   EXPECT_DOUBLE_EQ(read.depth_bias.offset_m, 0.0035);
   EXPECT_DOUBLE_EQ(read.depth_bias.per_metre, -0.012);
-  EXPECT_DOUBLE_EQ(read.depth_bias.dim_m, 0.0021);
+  EXPECT_DOUBLE_EQ(read.depth_bias.low_signal_m, 0.0021);
   EXPECT_DOUBLE_EQ(read.depth_bias.range_min_m, 0.25);
   EXPECT_DOUBLE_EQ(read.depth_bias.range_max_m, 0.9);
 }

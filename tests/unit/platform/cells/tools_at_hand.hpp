@@ -22,7 +22,7 @@ inline Tool random_tool(Random& random, int markers, double side_m) {
 
 // Applies `where` to each of the tool's markers and reverses their order.
 template <class Where>
-Tool redrawn(const Tool& tool, Where&& where) {
+Tool permuted_tool(const Tool& tool, Where&& where) {
   Tool out = tool;
   for (int i = 0; i < tool.marker_count; ++i) {
     out.markers_m[static_cast<std::size_t>(i)] =
@@ -44,7 +44,7 @@ inline ToolSet set_of(std::initializer_list<Tool> tools) {
 }
 
 // Five markers: all distances differ by at least 9 mm, no four markers are coplanar.
-inline Tool odd_tool() {
+inline Tool asymmetric_tool() {
   return tool_of({{-2, 23, 232}, {-40, 45, 115}, {45, 45, 240}, {-8, -45, 115}, {22, 24, 129}});
 }
 

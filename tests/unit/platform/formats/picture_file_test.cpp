@@ -75,7 +75,7 @@ TEST(PictureFile, ReadsEachKindOfPng) {
        {4, 5, 6, 1, 2, 3}},
   };
   for (const auto& c : cases) {
-    const Picture picture = read_picture(folder.write("a.png", c.file));
+    const Image picture = read_image_file(folder.write("a.png", c.file));
     EXPECT_EQ(picture.channels, c.channels) << c.name;
     EXPECT_EQ(picture.bits, c.bits) << c.name;
     EXPECT_EQ(picture.values, c.values) << c.name;
@@ -87,10 +87,10 @@ TEST(PictureFile, ReadsEachKindOfPng) {
 
 TEST(PictureFile, ReadsPgmOf8And16Bits) {
   const TemporaryFolder folder;
-  const Picture shallow = read_picture(folder.write("a.pgm", "P5 2 1 255 " + bytes({200, 3})));
+  const Image shallow = read_image_file(folder.write("a.pgm", "P5 2 1 255 " + bytes({200, 3})));
   EXPECT_EQ(shallow.values, (Values{200, 3}));
   EXPECT_EQ(shallow.bits, 8);
-  const Picture deep = read_picture(folder.write("a.pgm", "P5 1 1 4095 " + bytes({2, 1})));
+  const Image deep = read_image_file(folder.write("a.pgm", "P5 1 1 4095 " + bytes({2, 1})));
   EXPECT_EQ(deep.values, (Values{0x201}));
   EXPECT_EQ(deep.bits, 16);
 }
@@ -116,12 +116,12 @@ TEST(PictureFile, RefusesWhatIsNoWholePicture) {
   };
   for (const auto& c : cases) {
     const std::string path = folder.write("a.png", c.file);
-    const std::string message = message_of<InputError>([&] { (void)read_picture(path); });
+    const std::string message = message_of<InputError>([&] { (void)read_image_file(path); });
     EXPECT_EQ(message.rfind(path, 0), 0u) << message << " for " << c.expected;
     EXPECT_NE(message.find(c.expected), std::string::npos) << message << " for " << c.expected;
   }
-  EXPECT_NE(message_of<InputError>([&] { (void)read_picture(folder.path("")); }), "");
-  EXPECT_NE(message_of<InputError>([&] { (void)read_picture("/nonexistent/a.png"); }), "");
+  EXPECT_NE(message_of<InputError>([&] { (void)read_image_file(folder.path("")); }), "");
+  EXPECT_NE(message_of<InputError>([&] { (void)read_image_file("/nonexistent/a.png"); }), "");
 }
 
 TEST(PictureFile, AWrittenPngHoldsTheValues) {
@@ -132,7 +132,7 @@ TEST(PictureFile, AWrittenPngHoldsTheValues) {
   for (const int channels : {1, 3}) {
     const int width = channels == 1 ? 9 : 3;
     write_png(path, width, 5, channels, values.data(), "a place");
-    const Picture read = read_png(path, "");
+    const Image read = read_png(path, "");
     EXPECT_EQ(read.width, width);
     EXPECT_EQ(read.height, 5);
     EXPECT_EQ(read.channels, channels);

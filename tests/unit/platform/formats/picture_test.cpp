@@ -24,7 +24,7 @@ struct Scene {
   Scene() { frame.reflectivity_16 = {pixels.data(), 64, 48}; }
 };
 
-int coloured(const Picture& picture) {
+int coloured(const Image& picture) {
   int count = 0;
   for (std::size_t i = 0; i < picture.values.size(); i += 3) {
     const std::uint16_t* pixel = picture.values.data() + i;
@@ -37,8 +37,8 @@ TEST(Picture, DrawsRoisAndBlobsInColourOnTheGreyFrame) {
   const TemporaryFolder folder;
   Scene scene;
   const std::string path = folder.path("p.png");
-  write_picture(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, {});
-  const Picture plain = read_png(path, "");
+  write_detection_image(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, {});
+  const Image plain = read_png(path, "");
   ASSERT_EQ(plain.width, 128);
   ASSERT_EQ(plain.height, 96);
   EXPECT_EQ(coloured(plain), 0);
@@ -50,8 +50,8 @@ TEST(Picture, DrawsRoisAndBlobsInColourOnTheGreyFrame) {
   scene.blobs->items[0].x1 = 33;
   scene.blobs->count = 1;
   const std::vector<std::string> lines{"tools: none", "blobs: 1"};
-  write_picture(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, lines);
-  const Picture drawn = read_png(path, "");
+  write_detection_image(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, lines);
+  const Image drawn = read_png(path, "");
   EXPECT_EQ(drawn.width, 128);
   EXPECT_GT(drawn.height, 96 + 2 * 16);
   EXPECT_GT(coloured(drawn), 200);
@@ -62,19 +62,21 @@ TEST(Picture, ShowsADimRoomBesideABrightMarker) {
   const TemporaryFolder folder;
   Scene scene;
   scene.pixels[20 * 64 + 30] = 60000;
-  write_picture(folder.path("p.png"), scene.frame, scene.rois, *scene.blobs, *scene.markers, {});
-  const Picture picture = read_png(folder.path("p.png"), "");
+  write_detection_image(folder.path("p.png"), scene.frame, scene.rois, *scene.blobs, *scene.markers,
+                        {});
+  const Image picture = read_png(folder.path("p.png"), "");
   EXPECT_GT(picture.values[3 * (10 * 128 + 10)], 50);
 }
 
 TEST(Picture, RefusesAPathThatCannotBeWritten) {
   const Scene scene;
   const std::string path = "/nonexistent/p.png";
-  const std::string message = message_of<InputError>(
-      [&] { write_picture(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, {}); });
+  const std::string message = message_of<InputError>([&] {
+    write_detection_image(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, {});
+  });
   EXPECT_EQ(message.rfind(path + ": cannot be written", 0), 0u) << message;
   EXPECT_NE(message_of<InputError>([&] {
-              write_picture("p.png", Frame{}, scene.rois, *scene.blobs, *scene.markers, {});
+              write_detection_image("p.png", Frame{}, scene.rois, *scene.blobs, *scene.markers, {});
             }),
             "");
 }

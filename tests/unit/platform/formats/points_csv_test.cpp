@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-std::string complaint_about(const std::string& text) {
+std::string error_message_for(const std::string& text) {
   try {
     const auto frames = points_from_text(text, "points.csv");
     return "accepted " + std::to_string(frames.size()) + " frames";
@@ -33,27 +33,27 @@ TEST(PointsCsv, NeedsNoHeadingAndNoLastLineEnd) {
 }
 
 TEST(PointsCsv, NamesTheLineOfWhatItRefuses) {
-  EXPECT_EQ(complaint_about("0,1,2,3\n0,1,two,3\n"),
+  EXPECT_EQ(error_message_for("0,1,2,3\n0,1,two,3\n"),
             "points.csv:2: y_m is \"two\"; expected a number from -10000 to 10000");
-  EXPECT_EQ(complaint_about("time_s,x_m,y_m,z_m\n0,1,nan,3\n"),
+  EXPECT_EQ(error_message_for("time_s,x_m,y_m,z_m\n0,1,nan,3\n"),
             "points.csv:2: y_m is \"nan\"; expected a number from -10000 to 10000");
-  EXPECT_EQ(complaint_about("0,1,2,inf\n"),
+  EXPECT_EQ(error_message_for("0,1,2,inf\n"),
             "points.csv:1: z_m is \"inf\"; expected a number from -10000 to 10000");
-  EXPECT_EQ(complaint_about("1,1,2,3\n0.9,1,2,3\n"),
+  EXPECT_EQ(error_message_for("1,1,2,3\n0.9,1,2,3\n"),
             "points.csv:2: time_s runs backwards; expected rows in order of time");
-  EXPECT_EQ(complaint_about("0,1,2\n"),
+  EXPECT_EQ(error_message_for("0,1,2\n"),
             "points.csv:1: \"0,1,2\"; expected four columns time_s,x_m,y_m,z_m");
-  EXPECT_EQ(complaint_about("0,1,2,3,4\n"),
+  EXPECT_EQ(error_message_for("0,1,2,3,4\n"),
             "points.csv:1: \"0,1,2,3,4\"; expected four columns time_s,x_m,y_m,z_m");
-  EXPECT_EQ(complaint_about("0,1,2,3\ntime_s,x_m,y_m,z_m\n"),
+  EXPECT_EQ(error_message_for("0,1,2,3\ntime_s,x_m,y_m,z_m\n"),
             "points.csv:2: time_s is \"time_s\"; expected a number from -9e+09 to 9e+09");
-  EXPECT_EQ(complaint_about("0,1,2,\n"),
+  EXPECT_EQ(error_message_for("0,1,2,\n"),
             "points.csv:1: z_m is \"\"; expected a number from -10000 to 10000");
-  EXPECT_EQ(complaint_about("time_s,x_m,y_m,z_m\n"),
+  EXPECT_EQ(error_message_for("time_s,x_m,y_m,z_m\n"),
             "points.csv:1: holds no point; expected rows time_s,x_m,y_m,z_m");
   std::string crowd;
   for (int i = 0; i <= k_blobs_max; ++i) crowd += "0,1,2," + std::to_string(i) + "\n";
-  EXPECT_EQ(complaint_about(crowd),
+  EXPECT_EQ(error_message_for(crowd),
             "points.csv:257: more than 256 points of one time; expected at most so many");
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 // Centre of a sphere's elliptic silhouette, from its two rims along the line from the principal
 // point: f tan(theta +- a), sin a = r / range.
-Vector2 silhouette_middle(const Scenario& scenario, const Vector3& place, double radius) {
+Vector2 silhouette_centre(const Scenario& scenario, const Vector3& place, double radius) {
   const double range = place.norm(), f = scenario.camera.model.fx;
   const double tilt = std::atan2(std::hypot(place.x(), place.y()), place.z());
   const double half = std::asin(radius / range);
@@ -33,7 +33,7 @@ TEST(Blob, HasItsCentroidWhereTheSilhouetteIs) {
     for (int i = 0; i < 5; ++i) {
       const Vector3 place = scenario.tools[0].motion->pose(Time{}) *
                             scenario.tools[0].tool.markers_m[static_cast<std::size_t>(i)];
-      const Vector2 expected = silhouette_middle(scenario, place, 0.0055);
+      const Vector2 expected = silhouette_centre(scenario, place, 0.0055);
       const Vector2 miss = measure(frame, projected(scenario, i)).centroid - expected;
       EXPECT_LT(miss.norm(), 0.02) << step << " " << i;
       squares += miss.squaredNorm();
@@ -61,12 +61,12 @@ TEST(Blob, CoversTheAreaOfItsSphere) {
   SimFrame frame;
   Simulator(scenario).render(0, frame);
   double covered = 0;
-  const double whole = 8000 * 0.25;  // full signal: counts times range squared
+  const double full_signal = 8000 * 0.25;  // full signal: counts times range squared
   for (int y = 70; y < 90; ++y) {
     for (int x = 70; x < 95; ++x) covered += frame.view().reflectivity_16.row(y)[x];
   }
   const double radius_px = 253 * 0.0055 / 0.5;
-  const double area = covered / (whole / (0.4945 * 0.4945));
+  const double area = covered / (full_signal / (0.4945 * 0.4945));
   EXPECT_NEAR(area, 3.14159265 * radius_px * radius_px, 0.35);
 }
 

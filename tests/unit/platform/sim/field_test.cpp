@@ -31,9 +31,9 @@ TEST(DeviceErrors, AreThoseThatAreStated) {
 // second, uncorrelated over a minute and between markers.
 TEST(DeviceErrors, OfAMarkerChangeSlowly) {
   DeviceErrors device;
-  device.slow_range_m = 0.002;
-  device.slow_centroid_px = 0.1;
-  double squares = 0, soon = 0, late = 0, beside = 0, pixel_squares = 0;
+  device.correlated_range_m = 0.002;
+  device.correlated_centroid_px = 0.1;
+  double squares = 0, soon = 0, late = 0, between_markers = 0, pixel_squares = 0;
   int count = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     device.seed = seed;
@@ -46,7 +46,7 @@ TEST(DeviceErrors, OfAMarkerChangeSlowly) {
       squares += now * now;
       soon += now * error(0, s + 0.1).range_m;
       late += now * error(0, s + 67).range_m;
-      beside += now * error(1, s).range_m;
+      between_markers += now * error(1, s).range_m;
       pixel_squares += error(0, s).shift_px.squaredNorm();
     }
   }
@@ -54,7 +54,7 @@ TEST(DeviceErrors, OfAMarkerChangeSlowly) {
   EXPECT_NEAR(std::sqrt(pixel_squares / (2 * count)), 0.1, 0.01);
   EXPECT_GT(soon / squares, 0.97);
   EXPECT_LT(std::abs(late / squares), 0.25);
-  EXPECT_LT(std::abs(beside / squares), 0.25);
+  EXPECT_LT(std::abs(between_markers / squares), 0.25);
 }
 
 Scenario field(std::uint64_t seed) {
@@ -135,11 +135,11 @@ TEST(Field, MovesEachMarkersImageAndRangeByTheDevicesErrors) {
 }
 
 // The device is the same for each calibration, with the tool alone; the head is static except for
-// FieldTask::look.
+// FieldTask::move_head.
 TEST(Field, ShowsTheSameDeviceForEachCalibration) {
   const Scenario work = field(3);
-  for (const FieldTask task :
-       {FieldTask::board, FieldTask::turn, FieldTask::pivot, FieldTask::rest, FieldTask::look}) {
+  for (const FieldTask task : {FieldTask::target, FieldTask::rotate, FieldTask::pivot,
+                               FieldTask::still, FieldTask::move_head}) {
     const Scenario shown = field_run(
         hololens2_ahat(), {}, {{Quaternion::Identity(), {1, 0, 0}}, 0.003, 0.005}, 30, 3, task);
     EXPECT_EQ(shown.device.principal_point_px, work.device.principal_point_px);
@@ -147,21 +147,21 @@ TEST(Field, ShowsTheSameDeviceForEachCalibration) {
     EXPECT_EQ(shown.tools[0].tool.markers_m[2], work.tools[0].tool.markers_m[2]);
     EXPECT_EQ(shown.localisation.rest_position_m, work.localisation.rest_position_m);
     EXPECT_TRUE(shown.clutter.empty());
-    EXPECT_TRUE(shown.occlusions.empty() && shown.aways.empty() && shown.timing.slow.empty());
-    EXPECT_EQ(shown.board.has_value(), task == FieldTask::board);
+    EXPECT_TRUE(shown.occlusions.empty() && shown.absences.empty() && shown.timing.slow.empty());
+    EXPECT_EQ(shown.calibration_target.has_value(), task == FieldTask::target);
     const auto moved = [&](const MotionPointer& motion, const Vector3& point) {
       return (motion->pose(at_s(12)) * point - motion->pose(at_s(3)) * point).norm();
     };
     const ToolBody& body = shown.tools[0];
-    EXPECT_EQ(moved(shown.head, Vector3::Zero()) > 0.001, task == FieldTask::look);
+    EXPECT_EQ(moved(shown.head, Vector3::Zero()) > 0.001, task == FieldTask::move_head);
     if (task == FieldTask::pivot) {
       EXPECT_LT(moved(body.motion, body.tool.tip_m), 0.0005);
       EXPECT_GT(moved(body.motion, body.tool.markers_m[0]), 0.01);
     }
-    if (task == FieldTask::turn) {
+    if (task == FieldTask::rotate) {
       EXPECT_GT(moved(body.motion, body.tool.tip_m), 0.02);
     }
-    if (task == FieldTask::rest) {
+    if (task == FieldTask::still) {
       EXPECT_EQ(moved(body.motion, body.tool.markers_m[0]), 0);
     }
   }
@@ -172,7 +172,7 @@ TEST(ToolBody, IsTheSameInAFrameWhoseTipIsAsStated) {
   ToolBody& body = scenario.tools[0];
   const ToolBody before = body;
   const Quaternion turn = Quaternion(1, 0.02, -0.01, 0.03).normalized();
-  put_tip_at({0.001, 0.002, -0.003}, turn, body);
+  align_to_stated_frame({0.001, 0.002, -0.003}, turn, body);
   EXPECT_EQ(body.tool.tip_m, Vector3(0.001, 0.002, -0.003));
   const Pose was = before.motion->pose(at_s(4)), is = body.motion->pose(at_s(4));
   EXPECT_LT((was * before.tool.tip_m - is * body.tool.tip_m).norm(), 1e-12);

@@ -33,9 +33,9 @@ Spread spread_of(const LocalisationSettings& settings, const MotionPointer& came
   int n = 0;
   for (std::int64_t ms = 0; ms < 400'000; ms += 50) {
     const Time t{ms * 1'000'000};
-    const Pose truth = camera->pose(t), believed = localisation.pose(t);
-    const Vector3 move = pivot_of(believed, settings.pivot_m) - pivot_of(truth, settings.pivot_m);
-    const Vector3 turn = rotation_vector(believed.rotation * truth.rotation.conjugate());
+    const Pose truth = camera->pose(t), estimated = localisation.pose(t);
+    const Vector3 move = pivot_of(estimated, settings.pivot_m) - pivot_of(truth, settings.pivot_m);
+    const Vector3 turn = rotation_vector(estimated.rotation * truth.rotation.conjugate());
     for (int axis = 0; axis < 3; ++axis) {
       position2 += move[axis] * move[axis];
       position4 += move[axis] * move[axis] * move[axis] * move[axis];
@@ -90,8 +90,8 @@ TEST(Localisation, ErrsMoreTheFasterItMovesAndWithHeavierTails) {
 TEST(Localisation, GivesThePoseOfAMomentAgo) {
   LocalisationSettings settings;
   settings.rest_position_m = settings.rest_angle_rad = 0;
-  settings.position_per_speed_s = settings.position_per_turn_m = 0;
-  settings.angle_per_speed_s_m = settings.angle_per_turn_s = 0;
+  settings.position_per_speed_s = settings.position_per_angular_speed_m = 0;
+  settings.angle_per_speed_s_m = settings.angle_per_angular_speed_s = 0;
   settings.latency_s = 0.02;
   const MotionPointer camera = swaying(1);
   const Localisation localisation(settings, camera, k_long, 3);

@@ -28,7 +28,7 @@ class LongThrowTest : public testing::Test {
     sim::SimFrame frame;
     simulator_.describe(k_frame, frame);
     const Pose ahead{Quaternion::Identity(), Vector3(0, 0, range_m)};
-    LongThrow camera(simulator_, box(0.2), frame.truth.T_world_camera * ahead);
+    MappingCamera camera(simulator_, box(0.2), frame.truth.T_world_camera * ahead);
     return camera.depth(k_frame, frame);
   }
 

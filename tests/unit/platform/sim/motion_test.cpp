@@ -43,8 +43,8 @@ TEST(HandMotion, MovesNoFasterThanAHand) {
   HandSettings settings;
   const MotionPointer hand = hand_motion(settings, 1, 0);
   for (int ms = 0; ms < 60000; ms += 10) {
-    const StampedPose a{at_ms(ms), hand->pose(at_ms(ms))};
-    const StampedPose b{at_ms(ms + 10), hand->pose(at_ms(ms + 10))};
+    const TimedPose a{at_ms(ms), hand->pose(at_ms(ms))};
+    const TimedPose b{at_ms(ms + 10), hand->pose(at_ms(ms + 10))};
     const Velocity velocity = velocity_between(a, b);
     ASSERT_LT(velocity.linear_m_s.norm(), 1.5) << ms;
     ASSERT_LT(velocity.angular_rad_s.norm(), 6.0) << ms;
@@ -82,8 +82,8 @@ TEST(Grip, HoldsTheToolWithItsBestSideToTheCameraAndItsTipBelow) {
   const Grip grip = best_grip(tool);
   EXPECT_GT(std::abs(grip.towards_camera.z()), 0.8);  // the markers are near the x-y plane
   const Vector3 place(0.45, 0.1, -0.2);
-  const Pose pose = held_at(grip, place, Vector3::Zero());
-  EXPECT_NEAR((pose * grip.middle - place).norm(), 0, 1e-12);
+  const Pose pose = grip_pose(grip, place, Vector3::Zero());
+  EXPECT_NEAR((pose * grip.centroid - place).norm(), 0, 1e-12);
   EXPECT_NEAR((pose.rotation * grip.towards_camera).dot(place.normalized()), -1, 1e-9);
   EXPECT_LT((pose * tool.tip_m).z(), place.z() - 0.1);
 }

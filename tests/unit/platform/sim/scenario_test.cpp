@@ -82,7 +82,7 @@ TEST(Experiments, ShareOneSetOfErrorSources) {
   const Scenario a = experiment_static(), b = experiment_dynamic(2);
   EXPECT_EQ(a.noise.blob_range_sigma_m, b.noise.blob_range_sigma_m);
   EXPECT_EQ(a.noise.blob_pixel_sigma_px, b.noise.blob_pixel_sigma_px);
-  EXPECT_EQ(a.localisation.angle_per_turn_s, b.localisation.angle_per_turn_s);
+  EXPECT_EQ(a.localisation.angle_per_angular_speed_s, b.localisation.angle_per_angular_speed_s);
   EXPECT_EQ(a.localisation.rest_position_m, b.localisation.rest_position_m);
   EXPECT_NE(experiment_dynamic(0).seed, experiment_dynamic(1).seed);
 }

@@ -15,7 +15,7 @@ Scenario touches(std::uint64_t seed) {
   return scenario;
 }
 
-Time middle_of_touch(int touch) {
+Time touch_centre_time(int touch) {
   const TouchSettings settings;
   return {static_cast<std::int64_t>(
       1e9 * (touch * (settings.hold_s + settings.move_s) + 0.5 * settings.hold_s))};
@@ -28,7 +28,7 @@ TEST(Touches, StandOnTheirPoints) {
   const Vector3& tip_m = scenario.tools[0].tool.tip_m;
   for (int i = 0; i <= settings.touches; ++i) {
     const bool second = i % 3 == 2 && i < settings.touches;
-    const Vector3 tip = scenario.tools[0].motion->pose(middle_of_touch(i)) * tip_m;
+    const Vector3 tip = scenario.tools[0].motion->pose(touch_centre_time(i)) * tip_m;
     EXPECT_LT((tip - (second ? settings.second_m : settings.first_m)).norm(), 0.0003) << i;
   }
   const Time before_end = Time{} + settings.duration() - milliseconds(10);
@@ -40,12 +40,13 @@ TEST(Touches, LeanAndAreSeenFromOtherPlaces) {
   const Scenario scenario = touches(2);
   double turn = 0, way_m = 0, near_m = 1, far_m = 0;
   for (int i = 0; i < TouchSettings{}.touches; ++i) {
-    const Pose tool = scenario.tools[0].motion->pose(middle_of_touch(i));
-    const Pose next = scenario.tools[0].motion->pose(middle_of_touch(i + 1));
-    const Pose head = scenario.head->pose(middle_of_touch(i));
+    const Pose tool = scenario.tools[0].motion->pose(touch_centre_time(i));
+    const Pose next = scenario.tools[0].motion->pose(touch_centre_time(i + 1));
+    const Pose head = scenario.head->pose(touch_centre_time(i));
     turn = std::max(turn, tool.rotation.angularDistance(next.rotation));
     way_m = std::max(
-        way_m, (head.translation - scenario.head->pose(middle_of_touch(i + 1)).translation).norm());
+        way_m,
+        (head.translation - scenario.head->pose(touch_centre_time(i + 1)).translation).norm());
     const double range_m = (head.inverse() * tool.translation).norm();
     near_m = std::min(near_m, range_m);
     far_m = std::max(far_m, range_m);

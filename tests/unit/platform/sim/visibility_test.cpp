@@ -105,7 +105,7 @@ TEST(Visible, IsNothingWhileAHandPassesBefore) {
 TEST(Visible, IsNothingWhileThePenIsAway) {
   Scenario scenario = dark_scene();
   scenario.duration = milliseconds(2000);
-  scenario.aways.push_back({{Time{500'000'000}, Time{1'500'000'000}}, 0, Vector3(0, -1, 0)});
+  scenario.absences.push_back({{Time{500'000'000}, Time{1'500'000'000}}, 0, Vector3(0, -1, 0)});
   const Simulator simulator(scenario);
   SimFrame frame;
   simulator.render(45, frame);

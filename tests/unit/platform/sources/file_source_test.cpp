@@ -56,8 +56,8 @@ struct Delivered {
   std::vector<ArrivedFrame> frames;  // without their pixels
   SourceReport report;
   [[nodiscard]] std::uint64_t count(const std::string& name) const {
-    for (const auto& [known, count] : report.counts) {
-      if (known == name) return count;
+    for (const auto& [count_name, count] : report.counts) {
+      if (count_name == name) return count;
     }
     ADD_FAILURE() << "no count " << name;
     return 0;
@@ -71,7 +71,7 @@ Delivered delivered_by(FrameSource& source) {
   while (source.wait(arrived)) {
     EXPECT_EQ(arrived.frame.reflectivity_16.pixels[1], 2);
     delivered.frames.push_back(arrived);
-    source.give_back(arrived);
+    source.release_pixels(arrived);
   }
   EXPECT_FALSE(source.wait(arrived));
   delivered.report = source.report();
@@ -246,7 +246,7 @@ TEST(OpenSource, NamesTheKindsThereAre) {
   Cell cell = default_cell();
   cell.source.kind = "kinect";
   cell.source.path = "x";
-  cell.source.place = "cell.toml:3: source";
+  cell.source.position = "cell.toml:3: source";
   try {
     (void)open_source(cell);
     FAIL();

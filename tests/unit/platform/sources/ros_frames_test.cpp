@@ -93,7 +93,7 @@ class RosFramesTest : public testing::Test {
   [[nodiscard]] Time arrival(int number) const { return begin_ + k_period * (number + 1); }
   void send(RosFrames& frames, int number, ImageKind kind, const Sent& sent = {},
             std::uint64_t publisher = 1) {
-    frames.take_image(image_at(stamp(number), sent), kind, publisher, arrival(number));
+    frames.add_image(image_at(stamp(number), sent), kind, publisher, arrival(number));
   }
   void send_both(RosFrames& frames, int number) {
     send(frames, number, ImageKind::reflectivity);
@@ -118,7 +118,7 @@ class RosFramesTest : public testing::Test {
     for (; taken_ < live_.published(); ++taken_) {
       ArrivedFrame arrived;
       EXPECT_TRUE(live_.wait(arrived));
-      live_.give_back(arrived);
+      live_.release_pixels(arrived);
       all.push_back(arrived);
     }
     return all;
@@ -158,13 +158,13 @@ TEST_F(RosFramesTest, RefusesWhatIsNoImageOfTheCamera) {
       {{.bytes = 22}, "and 22 in all; expected rows that hold their pixels"}};
   for (const auto& [sent, part] : wrong) {
     RosFrames own(live_, topics());
-    own.take_image(image_at(stamp(0), sent), ImageKind::reflectivity, 1, arrival(0));
+    own.add_image(image_at(stamp(0), sent), ImageKind::reflectivity, 1, arrival(0));
     const SourceReport found = report(own);
     EXPECT_EQ(count(found, "images_refused"), 1u) << part;
     ASSERT_FALSE(found.failures.empty());
     EXPECT_NE(found.failures[0].find(part), std::string::npos) << found.failures[0];
   }
-  frames.take_image(Bytes{1, 2, 3}, ImageKind::depth, 1, arrival(0));
+  frames.add_image(Bytes{1, 2, 3}, ImageKind::depth, 1, arrival(0));
   EXPECT_EQ(count(report(frames), "images_refused"), 1u);
   EXPECT_TRUE(delivered().empty());
 }
@@ -187,7 +187,7 @@ TEST_F(RosFramesTest, FollowsOnePublisherUntilItIsSilent) {
   const int later = static_cast<int>(k_publisher_silent.nanoseconds / k_period.nanoseconds) + 1;
   // Its clock started later.
   for (const ImageKind kind : {ImageKind::reflectivity, ImageKind::depth}) {
-    frames.take_image(image_at(stamp(0)), kind, 2, arrival(later));
+    frames.add_image(image_at(stamp(0)), kind, 2, arrival(later));
   }
   EXPECT_EQ(delivered().size(), 2u);
   EXPECT_EQ(frames.publishers(), 2u);
@@ -197,12 +197,12 @@ TEST_F(RosFramesTest, WaitsForALaterTransformAndKeepsTheOrder) {
   SourceSettings source = topics();
   source.world_frame = "world_of_the_headset";
   RosFrames frames(live_, source);
-  frames.take_transforms(transform_at(stamp(0), 0), false);
+  frames.add_transforms(transform_at(stamp(0), 0), false);
   send_both(frames, 1);
   send_both(frames, 2);
   EXPECT_TRUE(delivered().empty());
-  frames.take_transforms(transform_at(stamp(2), 2), false);
-  frames.hand_over(arrival(2));
+  frames.add_transforms(transform_at(stamp(2), 2), false);
+  frames.publish_ready(arrival(2));
   const auto all = delivered();
   ASSERT_EQ(all.size(), 2u);
   EXPECT_TRUE(all[0].head.valid && all[1].head.valid);
@@ -214,12 +214,12 @@ TEST_F(RosFramesTest, GivesAFrameWithoutHeadPoseWhereNoneCame) {
   SourceSettings source = topics();
   source.pose_topic = "/pose";
   RosFrames frames(live_, source);
-  frames.take_pose(pose_at(stamp(0), 1));
+  frames.add_pose(pose_at(stamp(0), 1));
   send_both(frames, 1);
-  frames.hand_over(arrival(1) + k_period);
+  frames.publish_ready(arrival(1) + k_period);
   EXPECT_TRUE(delivered().empty());
   EXPECT_EQ(frames.due(), arrival(1) + k_period * k_pose_wait_gaps);
-  frames.hand_over(frames.due());
+  frames.publish_ready(frames.due());
   const auto all = delivered();
   ASSERT_EQ(all.size(), 1u);
   EXPECT_FALSE(all[0].head.valid);
@@ -257,17 +257,17 @@ TEST_F(RosFramesTest, TakesNoHeapOnceItsTransformsAreThere) {
   for (int i = 0; i < 3000; ++i) {
     messages.emplace_back(image_at(stamp(i)), transform_at(stamp(i), i));
   }
-  frames.take_transforms(transform_at(stamp(-1), 0), false);
+  frames.add_transforms(transform_at(stamp(-1), 0), false);
   const std::uint64_t before = AllocationCounter::count();
   AllocationCounter::arm();
   for (int i = 0; i < 3000; ++i) {
     const auto& [image, transform] = messages[static_cast<std::size_t>(i)];
-    frames.take_image(image, ImageKind::reflectivity, 1, arrival(i));
-    if (i % 7 != 0) frames.take_image(image, ImageKind::depth, 1, arrival(i));
-    frames.take_transforms(transform, false);
-    frames.hand_over(arrival(i));
+    frames.add_image(image, ImageKind::reflectivity, 1, arrival(i));
+    if (i % 7 != 0) frames.add_image(image, ImageKind::depth, 1, arrival(i));
+    frames.add_transforms(transform, false);
+    frames.publish_ready(arrival(i));
     ArrivedFrame arrived;
-    if (i % 7 != 0 && live_.wait(arrived)) live_.give_back(arrived);
+    if (i % 7 != 0 && live_.wait(arrived)) live_.release_pixels(arrived);
   }
   AllocationCounter::disarm();
   EXPECT_EQ(AllocationCounter::count() - before, 0u);

@@ -213,9 +213,9 @@ TEST(TransformTree, StatesUpToWhenItHasAllTransforms) {
   tree.add("rig", "camera", {}, {}, true);
   tree.add("map", "rig", Time{7}, {}, false);
   tree.add("world", "map", Time{5}, {}, false);
-  EXPECT_EQ(tree.known_until("map", "camera"), Time{7}) << "what stands above has no part";
-  EXPECT_EQ(tree.known_until("world", "camera"), Time{5});
-  EXPECT_FALSE(tree.known_until("elsewhere", "camera"));
+  EXPECT_EQ(tree.available_until("map", "camera"), Time{7}) << "what stands above has no part";
+  EXPECT_EQ(tree.available_until("world", "camera"), Time{5});
+  EXPECT_FALSE(tree.available_until("elsewhere", "camera"));
 }
 
 TEST(TransformTree, KeepsTheNewestOfATreeWithoutEnd) {
@@ -227,7 +227,7 @@ TEST(TransformTree, KeepsTheNewestOfATreeWithoutEnd) {
   tree.add("map", "rig", at_ms(0), turned_about_z(0, 1), false);  // a clock that restarted
   tree.add("map", "rig", at_ms(2), turned_about_z(0, 3), false);
   EXPECT_NEAR(tree.at("map", "rig", at_ms(1))->translation.x(), 2, 1e-9);
-  EXPECT_EQ(tree.known_until("map", "rig"), at_ms(2));
+  EXPECT_EQ(tree.available_until("map", "rig"), at_ms(2));
   for (std::size_t i = 0; i < 2 * k_live_links; ++i) {
     tree.add("map", std::to_string(i), {}, {}, true);
   }

@@ -32,7 +32,7 @@ TEST(ScenarioOf, DrawsTheDeviceFromWhatWasStatedBeforeItsCalibration) {
   cell.simulator.scenario = "field";
   cell.simulator.seed = 4;
   const sim::Scenario before = scenario_of(cell);
-  cell.simulator.drawn = path;
+  cell.simulator.ground_truth_cell = path;
   cell.camera.model.cx += 3;
   Tool& tool = cell.tools.items[0];
   const Pose moved{Quaternion(1, 0.001, 0.002, 0).normalized(), {0.0002, -0.0001, 0.0003}};

@@ -31,12 +31,12 @@ TEST(StampGate, SkipsDoubledAndBackwardStamps) {
 TEST(StampGate, SkipsOneStampFarOff) {
   StampGate gate(k_period);
   EXPECT_TRUE(gate.take(at(0)));
-  EXPECT_FALSE(gate.take(Time{} + k_leap_max + Duration{1}));
+  EXPECT_FALSE(gate.take(Time{} + k_stamp_step_max + Duration{1}));
   EXPECT_FALSE(gate.take(Time{INT64_MAX}));
   EXPECT_FALSE(gate.take(Time{INT64_MIN}));
   EXPECT_TRUE(gate.take(at(20)));
-  EXPECT_EQ(gate.counts().leaps, 3u);
-  EXPECT_TRUE(gate.take(at(20) + k_leap_max));
+  EXPECT_EQ(gate.counts().far_off, 3u);
+  EXPECT_TRUE(gate.take(at(20) + k_stamp_step_max));
 }
 
 TEST(StampGate, RefusesAFirstStampBeyondItsRange) {
@@ -58,7 +58,7 @@ TEST(StampGate, FollowsAClockThatRestarts) {
     EXPECT_EQ(first + gate.offset(), at(1'000'000) + k_period);
     EXPECT_TRUE(gate.take(first + k_period));
     EXPECT_EQ(gate.counts().restarts, 1u);
-    EXPECT_EQ(gate.counts().backward + gate.counts().leaps,
+    EXPECT_EQ(gate.counts().backward + gate.counts().far_off,
               static_cast<std::uint64_t>(k_restart_stamps));
   }
 }

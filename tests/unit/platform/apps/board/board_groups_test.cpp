@@ -41,13 +41,13 @@ class BoardGroupsTest : public testing::Test {
   ~BoardGroupsTest() override { std::filesystem::remove_all(folder_); }
 
   // Runs frames, then ticks, each released when due. If `pressed`, draw is pressed first.
-  [[nodiscard]] BoardResult run_with(const BoardBounds& bounds, bool pressed = false,
-                                     std::uint64_t first_tick = 0,
-                                     std::uint64_t ticks = k_ticks) const {
+  [[nodiscard]] CompanionResult run_with(const NodeWcets& bounds, bool pressed = false,
+                                         std::uint64_t first_tick = 0,
+                                         std::uint64_t ticks = k_ticks) const {
     SessionOptions options;
     options.out = folder_.string();
     options.with_reader = false;
-    options.plan = plan_on_one_core(cell_, -1, bounds);
+    options.plan = schedule_on_one_core(cell_, -1, bounds);
     Sinks sinks(cell_, options, 0);
     if (pressed) sinks.offer_button({Time{}, Button::draw, true});
     Time now;
@@ -64,12 +64,12 @@ class BoardGroupsTest : public testing::Test {
       now = Time{} + milliseconds(100 + 4 * static_cast<std::int64_t>(tick));
       groups.tick(first_tick + tick, now, now);
     }
-    BoardResult result;
+    CompanionResult result;
     groups.report(result);
     return result;
   }
 
-  static BoardBounds every_node(Duration bound) {
+  static NodeWcets every_node(Duration bound) {
     return {std::vector<std::int64_t>(Tracker::node_count, bound.nanoseconds),
             std::vector<std::int64_t>(Output::node_count, bound.nanoseconds)};
   }
@@ -80,22 +80,22 @@ class BoardGroupsTest : public testing::Test {
 };
 
 TEST_F(BoardGroupsTest, NoticeAheadThatWhatRemainsCannotBeInTime) {
-  const BoardResult result = run_with(every_node(k_deadline + Duration{1}));
+  const CompanionResult result = run_with(every_node(k_deadline + Duration{1}));
   EXPECT_EQ(result.frame_overruns.will_miss, k_frames);
   EXPECT_EQ(result.tick_overruns.will_miss, k_ticks);
   EXPECT_EQ(result.frame_overruns.missed + result.tick_overruns.missed, 0u);
 }
 
 TEST_F(BoardGroupsTest, GoOnWhereWhatRemainsFitsOrNoBoundIsKnown) {
-  for (const BoardBounds& bounds : {every_node(microseconds(1)), BoardBounds{}}) {
-    const BoardResult result = run_with(bounds);
+  for (const NodeWcets& bounds : {every_node(microseconds(1)), NodeWcets{}}) {
+    const CompanionResult result = run_with(bounds);
     EXPECT_EQ(result.frames, k_frames);
     EXPECT_EQ(result.frame_overruns.total() + result.tick_overruns.total(), 0u);
   }
 }
 
 TEST_F(BoardGroupsTest, RefuseAMethodThatTheProgramDoesNotHave) {
-  cell_.method = Method::seed;
+  cell_.method = Method::baseline;
   EXPECT_THROW((void)run_with({}), InputError);
 }
 

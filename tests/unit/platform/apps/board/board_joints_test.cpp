@@ -23,7 +23,7 @@ class HeardJointsOfABoard : public DdsTest {
     cell_.record.file.clear();
     cell_.files = {"", ""};
     cell_.realtime = true;
-    follow_a_box_on_a_slide(files_.folder(), cell_);
+    configure_sliding_box(files_.folder(), cell_);
     cell_.mapping->joints_lost_after = milliseconds(600'000);  // also on a slow machine
   }
 
@@ -37,7 +37,7 @@ TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
   SessionOptions options;
   options.out = files_.folder();
   options.with_reader = false;
-  options.plan = plan_on_one_core(cell_, -1, {});
+  options.plan = schedule_on_one_core(cell_, -1, {});
   Sinks sinks(cell_, options, unix_offset_ns);
   ASSERT_NE(sinks.inputs(), nullptr);
   SessionGroups groups(
@@ -46,19 +46,19 @@ TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
       read_background_scene(cell_, nullptr));
   ASSERT_NE(groups.background(), nullptr);
   BackgroundGroup& background = *groups.background();
-  background.reach(at_ms(550));
+  background.run_due_slices(at_ms(550));
   EXPECT_EQ(background.counts().robot.followed, 0);
   EXPECT_EQ(background.counts().joints_used, 0);
 
-  RobotSpeaker driver({"gripper", "slide"}, {9, k_slide_shown_m});
+  SimulatedRobotDriver driver({"gripper", "slide"}, {9, k_slide_shown_m});
   // When the second message is counted, the first one is stored.
   for (int i = 0; i < 1000 && sinks.inputs()->counts().joints < 2; ++i) {
-    driver.say_joints();
+    driver.publish_joints();
     (void)sleep_until(monotonic_now() + milliseconds(10));
   }
   ASSERT_GE(sinks.inputs()->counts().joints, 2u);
-  background.reach(at_ms(1150));
-  BoardResult result;
+  background.run_due_slices(at_ms(1150));
+  CompanionResult result;
   groups.report(result);
   ASSERT_TRUE(result.background);
   EXPECT_GE(result.background->robot.followed, 4) << name_of(result.background->robot.last);
@@ -68,7 +68,7 @@ TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
   EXPECT_GE(robot.at("joint_states_used"), 1);
   EXPECT_EQ(robot.at("pictures_without_joints"), 0);
   sinks.close(result);
-  EXPECT_GE(result.heard.joints, 2u);
+  EXPECT_GE(result.dds_received.joints, 2u);
 }
 
 }  // namespace

@@ -9,23 +9,23 @@ namespace glint::board_json_test {
 namespace {
 
 TEST(BoardJson, SaysWhatWasHeardOverCan) {
-  BoardResult result;
-  result.can_heard = {3, 2};
+  CompanionResult result;
+  result.can_received = {3, 2};
   const auto heard = as_json(result).at("can_heard");
   EXPECT_EQ(heard.at("buttons"), 3);
   EXPECT_EQ(heard.at("refused"), 2);
   EXPECT_EQ(heard.at("why_not"), "");
-  result.can_not_heard = "can.buttons: no bus";
+  result.can_receive_error = "can.buttons: no bus";
   EXPECT_EQ(as_json(result).at("can_heard").at("why_not"), "can.buttons: no bus");
 }
 
 TEST(BoardJson, SaysByWhichJointsTheRobotWasFollowed) {
-  BoardResult result;
+  CompanionResult result;
   EXPECT_FALSE(as_json(result).contains("background"));
   BackgroundCounts& counts = result.background.emplace();
   counts.joints_used = 5;
-  counts.joints_passed_over = 4;
-  counts.pictures_without_joints = 6;
+  counts.joints_skipped = 4;
+  counts.images_without_joints = 6;
   const auto robot = as_json(result).at("background").at("references");
   EXPECT_EQ(robot.at("joint_states_used"), 5);
   EXPECT_EQ(robot.at("joint_states_passed_over"), 4);

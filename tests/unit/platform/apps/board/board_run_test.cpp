@@ -60,13 +60,13 @@ class BoardRun : public testing::Test {
     return path("loop");
   }
 
-  [[nodiscard]] BoardResult run(const std::string& record) const {
+  [[nodiscard]] CompanionResult run(const std::string& record) const {
     const FrameLoop loop(loop_file());
-    BoardOptions options;
+    CompanionOptions options;
     options.frames = k_shown;
     options.out = folder_.string();
     options.record = record;
-    return run_board(cell_, loop, options);
+    return run_companion(cell_, loop, options);
   }
 
   [[nodiscard]] std::string path(const std::string& name) const {
@@ -78,7 +78,7 @@ class BoardRun : public testing::Test {
 };
 
 TEST_F(BoardRun, RecordsOnlyWhatItIsAskedTo) {
-  const BoardResult result = run("");
+  const CompanionResult result = run("");
   EXPECT_EQ(result.frames, k_shown);
   EXPECT_FALSE(result.background);
   EXPECT_TRUE(result.recording_file.empty());
@@ -89,8 +89,8 @@ class BoardRecording : public BoardRun, public testing::WithParamInterface<const
 
 TEST_P(BoardRecording, OfARobotThatIsFollowedReplaysToTheRunsHash) {
   cell_.record.level = GetParam();
-  follow_a_box(folder_.string(), 0, cell_);
-  const BoardResult result = run("board.mcap");
+  configure_box_robot(folder_.string(), 0, cell_);
+  const CompanionResult result = run("board.mcap");
   EXPECT_EQ(result.frames, k_shown);
   EXPECT_GT(result.frames_tracked, k_shown / 4);
   EXPECT_EQ(result.heap_allocations_after_start, 0u);
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(AtLevel, BoardRecording, testing::Values("roi", "blobs"
                          [](const auto& level) { return std::string(level.param); });
 
 TEST_F(BoardRun, RefusesDepthThatABoardCannotRead) {
-  follow_a_box(folder_.string(), 0, cell_);
+  configure_box_robot(folder_.string(), 0, cell_);
   std::ofstream(path("999.depth.png")) << "any";
   try {
     (void)run("");

@@ -100,7 +100,7 @@ TEST_F(FrameLoopFile, GoesToAndFroWithoutAJump) {
   const FrameLoop loop(file_);
   const std::uint32_t expected[] = {0, 1, 2, 1, 0, 1, 2, 1, 0};
   for (std::uint64_t shown = 0; shown < 9; ++shown) {
-    EXPECT_EQ(loop.place_of(shown), expected[shown]) << shown;
+    EXPECT_EQ(loop.index_of(shown), expected[shown]) << shown;
   }
 }
 

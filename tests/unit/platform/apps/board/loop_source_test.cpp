@@ -57,11 +57,11 @@ TEST_F(LoopSourceTest, LetsEveryFrameArriveOnceAndNoneBeforeItsTime) {
     EXPECT_GE(monotonic_now(), due);
     EXPECT_EQ(arrived.frame.arrival - Time{}, due - epoch);
     EXPECT_EQ(arrived.frame.sequence, static_cast<std::uint32_t>(i + 1));
-    EXPECT_EQ(arrived.slot, static_cast<int>(loop.place_of(static_cast<std::uint64_t>(i))));
-    source.give_back(arrived);
+    EXPECT_EQ(arrived.slot, static_cast<int>(loop.index_of(static_cast<std::uint64_t>(i))));
+    source.release_pixels(arrived);
   }
   EXPECT_FALSE(source.wait(arrived));
-  EXPECT_EQ(source.worst_shown(), 10);  // 0 1 2 1 0 1 2 1 ..
+  EXPECT_EQ(source.worst_frames_delivered(), 10);  // 0 1 2 1 0 1 2 1 ..
 }
 
 TEST_F(LoopSourceTest, KeepsFramesThatArriveWhileAnOlderOneIsWorkedOn) {
@@ -104,7 +104,7 @@ TEST_F(LoopSourceTest, InOrderWaitsForNoTimeAndGivesTheSameFrames) {
   for (int i = 0; i < 4; ++i) {
     ASSERT_TRUE(source.wait(arrived));
     EXPECT_EQ(arrived.frame.arrival, Time{} + milliseconds(7) + milliseconds(3'600'000) * i);
-    EXPECT_EQ(arrived.slot, static_cast<int>(loop.place_of(static_cast<std::uint64_t>(i))));
+    EXPECT_EQ(arrived.slot, static_cast<int>(loop.index_of(static_cast<std::uint64_t>(i))));
   }
   EXPECT_FALSE(source.wait(arrived));
   EXPECT_EQ(source.frame_count(), 4u);

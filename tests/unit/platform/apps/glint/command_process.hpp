@@ -23,7 +23,7 @@ class CommandProcess {
  public:
   // Starts glint with these arguments; both output streams are written to `log`.
   CommandProcess(std::vector<std::string> arguments, std::string log) : log_(std::move(log)) {
-    arguments.insert(arguments.begin(), beside_test("glint"));
+    arguments.insert(arguments.begin(), path_beside_test("glint"));
     std::vector<char*> words;
     for (std::string& argument : arguments) words.push_back(argument.data());
     words.push_back(nullptr);
@@ -42,10 +42,10 @@ class CommandProcess {
   CommandProcess(const CommandProcess&) = delete;
   CommandProcess& operator=(const CommandProcess&) = delete;
 
-  // Calls `act` repeatedly until `done` holds or the process ends. Returns false after k_patience.
+  // Calls `act` repeatedly until `done` holds or the process ends. Returns false after k_timeout.
   template <class Act, class Done>
-  [[nodiscard]] bool meanwhile(Act act, Done done) {
-    const auto end = std::chrono::steady_clock::now() + k_patience;
+  [[nodiscard]] bool repeat_until(Act act, Done done) {
+    const auto end = std::chrono::steady_clock::now() + k_timeout;
     while (!has_ended() && !done()) {
       if (std::chrono::steady_clock::now() > end) return false;
       act();
@@ -53,10 +53,10 @@ class CommandProcess {
     }
     return true;
   }
-  // Returns the exit code; -1 if the process does not end within k_patience or ends by a signal.
+  // Returns the exit code; -1 if the process does not end within k_timeout or ends by a signal.
   template <class Act>
   [[nodiscard]] int exit_code(Act act) {
-    const bool ended = meanwhile(act, [] { return false; });
+    const bool ended = repeat_until(act, [] { return false; });
     return ended && WIFEXITED(*status_) ? WEXITSTATUS(*status_) : -1;
   }
   [[nodiscard]] int exit_code() {
@@ -75,7 +75,7 @@ class CommandProcess {
 
  private:
   // Long enough for a sanitizer build on a busy machine.
-  static constexpr std::chrono::seconds k_patience{240};
+  static constexpr std::chrono::seconds k_timeout{240};
 
   std::string log_;
   pid_t process_ = -1;

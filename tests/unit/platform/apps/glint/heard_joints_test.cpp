@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_given_m = 0.6;  // x of the robot in the cell of run_of()
+constexpr double k_robot_x_m = 0.6;  // x of the robot in the cell of run_of()
 
 // The run publishes counts of its depth images on /diagnostics each second; the tests wait for
 // them.
@@ -29,7 +29,7 @@ class HeardJointsOfARun : public DdsTest {
         "\"robot.ply\"\njoints = [0]\n" +
             mapping);
     Cell cell = load_cell(cell_file);
-    follow_a_box_on_a_slide(files_.folder(), cell);
+    configure_sliding_box(files_.folder(), cell);
     return {"run", "--config", cell_file, "--out", files_.folder(), "--json", path("summary.json")};
   }
   [[nodiscard]] std::string path(const char* name) const { return files_.folder() + "/" + name; }
@@ -57,7 +57,7 @@ class HeardJointsOfARun : public DdsTest {
       for (std::uint32_t i = 0; info.valid_data && i < message->transforms._length; ++i) {
         const TransformMessage& one = message->transforms._buffer[i];
         const bool robot = std::string_view(one.child_frame_id) == "robot_base";
-        moved = moved || (robot && one.transform.translation.x != k_given_m);
+        moved = moved || (robot && one.transform.translation.x != k_robot_x_m);
       }
       dds_return_loan(statics_, sample, 1);
     }
@@ -72,7 +72,7 @@ class HeardJointsOfARun : public DdsTest {
   }
 
   const test::Files files_;
-  RobotSpeaker driver_{{"gripper", "slide"}, {9, 0}};
+  SimulatedRobotDriver driver_{{"gripper", "slide"}, {9, 0}};
   dds_entity_t diagnostics_ =
       driver_.peer().reader(diagnostics_type(), k_diagnostics_topic, Reliability::reliable,
                             Durability::volatile_data, 10);
@@ -83,7 +83,7 @@ class HeardJointsOfARun : public DdsTest {
 
 TEST_F(HeardJointsOfARun, LetItFollowWhatItCannotFollowWithoutThem) {
   CommandProcess run(run_of(""), path("words.txt"));
-  ASSERT_TRUE(run.meanwhile(
+  ASSERT_TRUE(run.repeat_until(
       [] {}, [&] { return robot_count("unsure") + robot_count("jumps_refused") >= 1; }));
   ASSERT_FALSE(run.has_ended()) << run.words();
   EXPECT_EQ(robot_count("followed"), 0);
@@ -92,10 +92,10 @@ TEST_F(HeardJointsOfARun, LetItFollowWhatItCannotFollowWithoutThem) {
   const auto move = [&] {
     slide = std::min(slide + 0.01, k_slide_shown_m);
     driver_.move_to({9, slide});
-    driver_.say_joints();
+    driver_.publish_joints();
   };
-  EXPECT_TRUE(run.meanwhile(move, [&] { return robot_count("followed") >= 1; }));
-  EXPECT_TRUE(run.meanwhile([] {}, [&] { return was_moved_in_tf(); }));
+  EXPECT_TRUE(run.repeat_until(move, [&] { return robot_count("followed") >= 1; }));
+  EXPECT_TRUE(run.repeat_until([] {}, [&] { return was_moved_in_tf(); }));
   ASSERT_FALSE(run.has_ended()) << run.words();
   const nlohmann::json robot = end(run);
   EXPECT_GE(robot.at("followed"), 1);
@@ -106,14 +106,14 @@ TEST_F(HeardJointsOfARun, LetItFollowWhatItCannotFollowWithoutThem) {
 TEST_F(HeardJointsOfARun, AreMissedWhenTheyStopAndServeWhenTheyComeAgain) {
   CommandProcess run(run_of("joints_lost_after_ms = 500\n"), path("words.txt"));
   driver_.move_to({9, k_slide_shown_m});
-  const auto speak = [&] { driver_.say_joints(); };
+  const auto speak = [&] { driver_.publish_joints(); };
   const auto warns = [&] { return robot_count("without_joints") > 0 && robot_.level == 1; };
-  ASSERT_TRUE(run.meanwhile(speak, [&] { return robot_count("followed") >= 1; }));
-  EXPECT_TRUE(run.meanwhile([] {}, warns));
+  ASSERT_TRUE(run.repeat_until(speak, [&] { return robot_count("followed") >= 1; }));
+  EXPECT_TRUE(run.repeat_until([] {}, warns));
   EXPECT_EQ(robot_.message,
             "not followed: no joint states for too long; see to the robot's driver");
   const long followed = robot_count("followed");
-  EXPECT_TRUE(run.meanwhile(
+  EXPECT_TRUE(run.repeat_until(
       speak, [&] { return robot_count("followed") >= followed + 2 && robot_.level == 0; }));
   ASSERT_FALSE(run.has_ended()) << run.words();
   EXPECT_GE(end(run).at("pictures_without_joints"), 1);

@@ -36,12 +36,12 @@ class ReferenceCommand : public DdsTest {
 };
 
 TEST_F(ReferenceCommand, FindsTheRobotThatItHearsOf) {
-  RobotSpeaker speaker({"slide", "gripper", "turn"}, {0.02, 9, 0.4});
-  speaker.say_description(post_arm_xml());
+  SimulatedRobotDriver speaker({"slide", "gripper", "turn"}, {0.02, 9, 0.4});
+  speaker.publish_description(post_arm_xml());
   CommandProcess command(listens("120"), path("words.txt"));
   const int code = command.exit_code([&] {
-    speaker.say_joints();
-    speaker.say_guess(k_post_arm_guess);
+    speaker.publish_joints();
+    speaker.publish_guess(k_post_arm_guess);
   });
   ASSERT_EQ(code, 0) << command.words();
   std::ifstream file(path("reference.json"));
@@ -59,12 +59,12 @@ TEST_F(ReferenceCommand, FindsTheRobotThatItHearsOf) {
 }
 
 TEST_F(ReferenceCommand, RefusesAGuessInAnotherFrameThanItsCameras) {
-  RobotSpeaker speaker({"turn", "slide"}, k_shown_positions);
-  speaker.say_description(post_arm_xml());
+  SimulatedRobotDriver speaker({"turn", "slide"}, k_shown_positions);
+  speaker.publish_description(post_arm_xml());
   CommandProcess command(listens("120"), path("words.txt"));
   const int code = command.exit_code([&] {
-    speaker.say_joints();
-    speaker.say_guess(k_post_arm_guess, "map");
+    speaker.publish_joints();
+    speaker.publish_guess(k_post_arm_guess, "map");
   });
   EXPECT_EQ(code, 2);
   const std::string words = command.words();
@@ -76,10 +76,10 @@ TEST_F(ReferenceCommand, RefusesAGuessInAnotherFrameThanItsCameras) {
 }
 
 TEST_F(ReferenceCommand, EndsWithTheJointsThatNobodySaid) {
-  RobotSpeaker speaker({"turn", "slide"}, k_shown_positions);
-  speaker.say_description(post_arm_xml());
+  SimulatedRobotDriver speaker({"turn", "slide"}, k_shown_positions);
+  speaker.publish_description(post_arm_xml());
   CommandProcess command(listens("1"), path("words.txt"));
-  EXPECT_EQ(command.exit_code([&] { speaker.say_guess(k_post_arm_guess); }), 2);
+  EXPECT_EQ(command.exit_code([&] { speaker.publish_guess(k_post_arm_guess); }), 2);
   const std::string words = command.words();
   EXPECT_NE(words.find("glint: --listen: 1.0 s on lo, domain 0"), std::string::npos) << words;
   EXPECT_NE(words.find("rt/joint_states: nothing heard; expected it of"), std::string::npos)

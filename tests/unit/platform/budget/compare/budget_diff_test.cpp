@@ -127,7 +127,8 @@ TEST_F(Diff, FindsTheOneNodeThatBecameSlower) {
   slow_down("b/run/trace.spans", 6, 1.1);
   const BudgetDiff diff = budget_diff(of("a/run"), of("b/run/trace.spans"), {});
   for (const DiffRow& r : diff.rows) {
-    EXPECT_EQ(r.change, r.name == "frame FindBlobs" ? Change::slower : Change::not_shown) << r.name;
+    EXPECT_EQ(r.change, r.name == "frame FindBlobs" ? Change::slower : Change::not_significant)
+        << r.name;
   }
   EXPECT_TRUE(diff.worse());
   EXPECT_FALSE(budget_diff(of("a/run"), of("b/run"), {.tolerance_percent = 20}).worse());

@@ -46,7 +46,7 @@ TEST(ExtremeEstimate, FindsTheLevelOfAKnownDistributionWithinItsInterval) {
   int refused = 0, applicable = 0, inside = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const ExtremeEstimate estimate = estimate_by_maxima(gumbel_series(seed), {.resamples = 200});
-    const bool open = estimate.why.find("leave the level open") != std::string::npos;
+    const bool open = estimate.reason.find("leave the level open") != std::string::npos;
     refused += !estimate.applicable && !open ? 1 : 0;
     if (!estimate.applicable) continue;
     ++applicable;
@@ -62,7 +62,7 @@ TEST(ExtremeEstimate, FindsTheSameLevelByExceedances) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const ExtremeEstimate estimate =
         estimate_by_exceedances(gumbel_series(seed), {.resamples = 200});
-    const bool open = estimate.why.find("leave the level open") != std::string::npos;
+    const bool open = estimate.reason.find("leave the level open") != std::string::npos;
     refused += !estimate.applicable && !open ? 1 : 0;
     if (!estimate.applicable) continue;
     ++applicable;
@@ -82,7 +82,8 @@ TEST(ExtremeEstimate, RefusesTimesThatRememberTheOneBefore) {
   });
   const ExtremeEstimate estimate = estimate_by_maxima(series);
   EXPECT_FALSE(estimate.applicable);
-  EXPECT_NE(estimate.why.find("not independent (Ljung-Box"), std::string::npos) << estimate.why;
+  EXPECT_NE(estimate.reason.find("not independent (Ljung-Box"), std::string::npos)
+      << estimate.reason;
 }
 
 TEST(ExtremeEstimate, RefusesTimesThatGrow) {
@@ -91,7 +92,7 @@ TEST(ExtremeEstimate, RefusesTimesThatGrow) {
       k_many, [&](std::size_t i) { return draws.gumbel(100, 5) + 1e-4 * static_cast<double>(i); });
   const ExtremeEstimate estimate = estimate_by_maxima(series);
   EXPECT_FALSE(estimate.applicable);
-  EXPECT_NE(estimate.why.find("not stationary"), std::string::npos) << estimate.why;
+  EXPECT_NE(estimate.reason.find("not stationary"), std::string::npos) << estimate.reason;
 }
 
 TEST(ExtremeEstimate, RefusesTwoModesThatTakeTurns) {
@@ -113,7 +114,8 @@ TEST(ExtremeEstimate, RefusesARareModeFarOutBecauseTheOtherHalfDisagrees) {
   });
   const ExtremeEstimate estimate = estimate_by_maxima(series);
   EXPECT_FALSE(estimate.applicable);
-  EXPECT_NE(estimate.why.find("does not hold on the other"), std::string::npos) << estimate.why;
+  EXPECT_NE(estimate.reason.find("does not hold on the other"), std::string::npos)
+      << estimate.reason;
 }
 
 // One outlier in five thousand values leaves the tail unbounded.
@@ -122,13 +124,13 @@ TEST(ExtremeEstimate, RefusesALevelThatTheValuesLeaveOpen) {
   series[1234] = 2000;
   const ExtremeEstimate estimate = estimate_by_maxima(series);
   EXPECT_FALSE(estimate.applicable);
-  EXPECT_FALSE(estimate.why.empty());
+  EXPECT_FALSE(estimate.reason.empty());
 }
 
 TEST(ExtremeEstimate, SaysHowManyValuesItNeeds) {
   Draws draws(11);
   const auto series = draws.series(812, [&](std::size_t) { return draws.gumbel(100, 5); });
-  EXPECT_EQ(estimate_by_maxima(series).why,
+  EXPECT_EQ(estimate_by_maxima(series).reason,
             "812 values; at least 3000 are needed (two halves of 30 blocks of 50)");
 }
 
@@ -136,7 +138,7 @@ TEST(ExtremeEstimate, RefusesCountsThatHardlyVary) {
   Draws draws(12);
   const auto series =
       draws.series(k_many, [&](std::size_t) { return std::floor(3 * draws.uniform()); });
-  EXPECT_NE(estimate_by_maxima(series).why.find("different values among"), std::string::npos);
+  EXPECT_NE(estimate_by_maxima(series).reason.find("different values among"), std::string::npos);
 }
 
 TEST(ExtremeFit, RecoversAHeavyAndAnEndingTail) {
@@ -178,7 +180,7 @@ TEST(SeriesTests, RefuseAsManyGoodSeriesAsTheyClaim) {
     refused[0] += ljung_box(series, 20) < 0.01 ? 1 : 0;
     refused[1] += runs_test(series) < 0.01 ? 1 : 0;
     refused[2] += mann_kendall(series) < 0.01 ? 1 : 0;
-    refused[3] += halves_alike(series) < 0.01 ? 1 : 0;
+    refused[3] += two_halves_p(series) < 0.01 ? 1 : 0;
   }
   for (const int count : refused) {
     EXPECT_GE(count, 5);  // 20 expected; binomial, four standard deviations

@@ -69,7 +69,7 @@ TEST_F(BudgetReport, HoldsWhereEveryBoundMeetsItsDeadlineAndNothingSeenLiesAbove
 
 TEST_F(BudgetReport, IsVoidWhereOneNodeOnceTookLongerThanItsBound) {
   const Document document = report({.one_frame_above_bound = true});
-  EXPECT_EQ(document.verdict, Verdict::void_bound);
+  EXPECT_EQ(document.verdict, Verdict::invalid_bound);
   EXPECT_TRUE(some_reason_has(document, "FindBlobs: 1 of 1300 calls above their bound of 58"));
 }
 

@@ -21,13 +21,13 @@ sim::SimFrame frame_with(const Pose& T_reference_tool) {
 }
 
 // The tip's pose as a method without a covariance returns it.
-Result<UncertainPose> answered(const Pose& T_world_tool, Reason reason = Reason::none) {
+Result<UncertainPose> tip_result(const Pose& T_world_tool, Reason reason = Reason::none) {
   const Pose T_tool_tip{Quaternion::Identity(), small_tool().tip_m};
   return {{{}, T_world_tool * T_tool_tip, Matrix6::Zero()}, reason};
 }
 
 Result<UncertainPose> shifted(const Pose& pose, const Vector3& by) {
-  return answered({pose.rotation, pose.translation + by});
+  return tip_result({pose.rotation, pose.translation + by});
 }
 
 const Pose k_pose = turned(0.1, 0.2, 0.3, {0.1, 0.2, 0.5});
@@ -39,7 +39,7 @@ TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
   for (int i = 0; i < 20; ++i)
     record.take_aligning(frame_with(k_pose), shifted(k_pose, offset), 0.5);
   for (int i = 0; i < 10; ++i)
-    record.take_judged(frame_with(k_pose), shifted(k_pose, offset + Vector3(0, 0.003, 0)), 1.5);
+    record.add_evaluated(frame_with(k_pose), shifted(k_pose, offset + Vector3(0, 0.003, 0)), 1.5);
   const MethodFigures figures = record.figures();
   EXPECT_EQ(figures.samples, 10);
   EXPECT_EQ(figures.position_mm.summary.count, 30u);  // x, y and z pooled
@@ -52,12 +52,12 @@ TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
 TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
   MethodRecord record("any", small_tool(), {0, 0, {}});
   record.begin_run();
-  record.take_aligning(frame_with(k_pose), answered(k_pose), 1);
-  record.take_judged(frame_with(k_pose), answered(k_pose, Reason::no_labeling), 1);
+  record.take_aligning(frame_with(k_pose), tip_result(k_pose), 1);
+  record.add_evaluated(frame_with(k_pose), tip_result(k_pose, Reason::no_labeling), 1);
   sim::SimFrame no_head = frame_with(k_pose);
   no_head.head.valid = false;
-  record.take_judged(no_head, answered(k_pose), 1);
-  record.take_judged(frame_with(k_pose), answered(k_pose), 1);
+  record.add_evaluated(no_head, tip_result(k_pose), 1);
+  record.add_evaluated(frame_with(k_pose), tip_result(k_pose), 1);
   EXPECT_EQ(record.figures().frames, 3);
   EXPECT_EQ(record.figures().samples, 1);
   ASSERT_EQ(record.path_m().size(), 3u);  // a gap for each frame without a pose
@@ -68,14 +68,14 @@ TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
 TEST(MethodRecord, CountsHowOftenTheStatedEllipsoidHoldsTheTip) {
   MethodRecord record("any", small_tool(), {0, 0, {}});
   record.begin_run();
-  for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), answered(k_pose), 1);
+  for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), tip_result(k_pose), 1);
   Result<UncertainPose> answer = shifted(k_pose, {0, 0.001, 0});
-  record.take_judged(frame_with(k_pose), answer, 1);
+  record.add_evaluated(frame_with(k_pose), answer, 1);
   EXPECT_FALSE(record.figures().covered.has_value()) << "it stated none";
   answer.value.covariance = Matrix6::Identity() * 1e-6;
-  record.take_judged(frame_with(k_pose), answer, 1);
+  record.add_evaluated(frame_with(k_pose), answer, 1);
   answer.value.covariance *= 0.1;
-  record.take_judged(frame_with(k_pose), answer, 1);
+  record.add_evaluated(frame_with(k_pose), answer, 1);
   EXPECT_EQ(record.figures().covered, 0.5);
 }
 
@@ -85,7 +85,7 @@ TEST(MethodRecord, AlignsEachRunAnew) {
     record.begin_run();
     const Result<UncertainPose> answer = shifted(k_pose, Vector3(offset, 0, 0));
     for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), answer, 1);
-    for (int i = 0; i < 5; ++i) record.take_judged(frame_with(k_pose), answer, 1);
+    for (int i = 0; i < 5; ++i) record.add_evaluated(frame_with(k_pose), answer, 1);
   }
   EXPECT_LT(record.figures().position_mm.summary.mean_abs, 1e-6);
 }

@@ -27,8 +27,8 @@ inline double sphere_range(const Vector3& ray, const Vector3& centre, double rad
   return square > 0 ? along - std::sqrt(square) : 0;
 }
 
-inline FrameBuffer painted_frame(const Camera& camera, const Tool& tool,
-                                 const Pose& T_camera_tool) {
+inline FrameBuffer rendered_frame(const Camera& camera, const Tool& tool,
+                                  const Pose& T_camera_tool) {
   FrameBuffer buffer;
   buffer.width = camera.model.width;
   buffer.height = camera.model.height;

@@ -22,7 +22,7 @@ TEST(SeedMatch, FindsTheToolAmongStrays) {
   const Tool tool = small_tool();
   std::vector<Vector3> points = {{0.2, 0.1, 0.6}, {-0.1, 0.1, 0.4}};
   for (const Vector3& point : placed(tool, k_pose)) points.insert(points.begin() + 1, point);
-  const SeedMatch match = match_tool(points, tool, {});
+  const BaselineMatch match = match_tool(points, tool, {});
   ASSERT_EQ(match.reason, Reason::none);
   EXPECT_EQ(match.count, 5);
   EXPECT_LT(match.rms_m, 1e-12);
@@ -35,7 +35,7 @@ TEST(SeedMatch, IsContentWithThreeOfTheMarkers) {
   const Tool tool = small_tool();
   std::vector<Vector3> points = placed(tool, k_pose);
   points.erase(points.begin() + 1, points.begin() + 3);
-  const SeedMatch match = match_tool(points, tool, {});
+  const BaselineMatch match = match_tool(points, tool, {});
   ASSERT_EQ(match.reason, Reason::none);
   EXPECT_EQ(match.count, 3);
   EXPECT_EQ(match.point[1], -1);
@@ -65,7 +65,7 @@ TEST(SeedMatch, FitsFlatSetsWithARotationNeverAReflection) {
   ASSERT_EQ(prepare_tool(tool), Reason::none);
   for (int i = 0; i < 40; ++i) {
     const Pose pose = turned(0.5 * i, 0.3 * i, 0.2 * i, {0.01, 0.02, 0.5});
-    const SeedMatch match = match_tool(placed(tool, pose), tool, {});
+    const BaselineMatch match = match_tool(placed(tool, pose), tool, {});
     ASSERT_EQ(match.reason, Reason::none) << i;
     EXPECT_LT(match.T_camera_tool.rotation.angularDistance(pose.rotation), 1e-6) << i;
   }

@@ -11,7 +11,7 @@ TEST(AnchoredExperiment, HoldsEveryHeadsetToTheBoard) {
   CaseOptions options;
   options.quick = true;
   options.seed = 60;
-  const CaseList list = run_anchored(options);
+  const CaseList list = run_drift_correction(options);
   ASSERT_EQ(list.cases.size(), 6u);
   for (std::size_t i = 0; i < list.cases.size(); ++i) {
     const ExperimentCase& one = list.cases[i];

@@ -31,7 +31,7 @@ TEST(CramerRao, OfASquareSeenStraightOnIsWhatItsGeometrySays) {
   square.markers_m = {Vector3(0.05, 0, 0), Vector3(0, 0.05, 0), Vector3(-0.05, 0, 0),
                       Vector3(0, -0.05, 0)};
   const Pose pose{Quaternion::Identity(), Vector3(0, 0, 20)};
-  const SightNoise noise{0.001 * 253 / 20, 0.002};
+  const ObservationNoise noise{0.001 * 253 / 20, 0.002};
   const Matrix6 bound = cramer_rao_bound(pinhole(), square, pose, Vector3::Zero(), noise);
   const double s = 1e-6;
   const double expected[6] = {s / 4, s / 4, s, 4 * s / 0.005, 4 * s / 0.005, s / 0.01};
@@ -60,7 +60,7 @@ TEST(PointView, DrawsPosesAtTheirTiltAndTheirMirrorImages) {
     EXPECT_NEAR((drawn.T_camera_tool * mean).norm(), 0.5, 1e-12);
     EXPECT_NEAR((drawn.T_camera_tool.rotation * ndi.normal).dot(-sight), std::cos(0.4), 1e-9);
     EXPECT_NEAR((drawn.T_camera_mirrored.rotation * ndi.normal).dot(-sight), std::cos(0.4), 1e-9);
-    EXPECT_NEAR(turned_by(drawn.T_camera_tool, drawn.T_camera_mirrored), 0.8, 1e-9);
+    EXPECT_NEAR(rotation_between_rad(drawn.T_camera_tool, drawn.T_camera_mirrored), 0.8, 1e-9);
   }
 }
 

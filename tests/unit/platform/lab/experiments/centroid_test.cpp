@@ -20,7 +20,7 @@ TEST(CentroidExperiment, HoldsItsBarsInAQuickRun) {
 TEST(CentroidExperiment, WouldSeeASigmaThatIsTooSmall) {
   CentroidCase weak = sized_cases().back();
   weak.stated.read_counts /= 10;
-  SpherePictures pictures(weak.setting, 3);
+  SphereImages pictures(weak.setting, 3);
   CentroidMethods methods(pictures.camera(), weak.stated, {weak.setting.radius_m});
   FrameBuffer buffer;
   double squares = 0, variances = 0;
@@ -37,7 +37,7 @@ TEST(CentroidExperiment, WouldSeeASigmaThatIsTooSmall) {
 // Image i does not depend on the images rendered before it.
 TEST(SpherePictures, DependOnTheirNumberAlone) {
   const CentroidCase one = sized_cases().front();
-  SpherePictures forward(one.setting, 5), back(one.setting, 5);
+  SphereImages forward(one.setting, 5), back(one.setting, 5);
   FrameBuffer a, b;
   (void)forward.render(0, a);
   (void)forward.render(1, a);

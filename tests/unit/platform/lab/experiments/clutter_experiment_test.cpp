@@ -23,12 +23,12 @@ double value_of(const std::vector<Figure>& figures, const std::string& name) {
 }
 
 // Two of the five tools, both fully visible and estimated at their ground truth poses.
-struct TwoSeen {
+struct TwoVisibleTools {
   ToolSet tools = five_tools(1);
-  FrameTruth truth;
+  FrameGroundTruth truth;
   FrameOutcome outcome;
 
-  TwoSeen() {
+  TwoVisibleTools() {
     tools.count = 2;
     truth.T_world_tool = {{Quaternion::Identity(), Vector3(0, 0, 0.5)},
                           {Quaternion::Identity(), Vector3(0.3, 0, 0.5)}};
@@ -51,7 +51,7 @@ struct TwoSeen {
 };
 
 TEST(ClutterTally, CountsToolsAsTheyAreAsTracked) {
-  const TwoSeen seen;
+  const TwoVisibleTools seen;
   ClutterTally tally(seen.tools);
   tally.add(seen.outcome, seen.truth);
   EXPECT_EQ(tally.trackable(), 2);
@@ -61,7 +61,7 @@ TEST(ClutterTally, CountsToolsAsTheyAreAsTracked) {
 }
 
 TEST(ClutterTally, CountsThreeMarkersWhateverWasTrackedBefore) {
-  TwoSeen seen;
+  TwoVisibleTools seen;
   seen.tools.count = 1;
   ClutterTally tally(seen.tools);
   seen.truth.visible_mask[0] = 0b111;
@@ -71,18 +71,18 @@ TEST(ClutterTally, CountsThreeMarkersWhateverWasTrackedBefore) {
   EXPECT_EQ(tally.trackable(), 1);
   EXPECT_EQ(value_of(tally.figures({}, {}), "missed_no_labeling"), 1);
   seen.truth.visible_mask[0] = 0b11;
-  tally.add(TwoSeen().outcome, seen.truth);
+  tally.add(TwoVisibleTools().outcome, seen.truth);
   EXPECT_EQ(tally.trackable(), 1);
 }
 
 TEST(ClutterTally, CallsAPoseGrossThatIsFarOffOrTurned) {
-  TwoSeen seen;
+  TwoVisibleTools seen;
   ClutterTally tally(seen.tools);
   seen.outcome.tools[0].T_camera_tool.translation.z() += 0.021;
   seen.outcome.tools[1].T_camera_tool.translation.z() += 0.019;
   tally.add(seen.outcome, seen.truth);
   EXPECT_EQ(tally.gross(), 1);
-  TwoSeen turned;
+  TwoVisibleTools turned;
   turned.turn(0, 15.1 * k_radians_per_degree);
   turned.turn(1, 14.9 * k_radians_per_degree);
   tally.add(turned.outcome, turned.truth);
@@ -91,7 +91,7 @@ TEST(ClutterTally, CallsAPoseGrossThatIsFarOffOrTurned) {
 }
 
 TEST(ClutterTally, CallsSwappedOnlyWhatLiesOnAnotherTool) {
-  TwoSeen seen;
+  TwoVisibleTools seen;
   seen.tools.items[0] = seen.tools.items[1];
   ClutterTally tally(seen.tools);
   seen.outcome.tools[0].marker_mask = 0b1111;
@@ -103,15 +103,16 @@ TEST(ClutterTally, CallsSwappedOnlyWhatLiesOnAnotherTool) {
 }
 
 TEST(ClutterScene, HasFiveToolsThatTheCellReaderTellsApart) {
-  for (const Likeness& likeness : distinguish(five_tools(1), {}).likenesses)
-    EXPECT_EQ(likeness.seen, likeness.other) << likeness.distance_sigmas;
+  for (const WrongLabeling& labeling : distinguish(five_tools(1), {}).wrong_labelings)
+    EXPECT_EQ(labeling.seen, labeling.other) << labeling.distance_sigmas;
 }
 
 TEST(ClutterScene, MakesToolsThatAreJustFarEnoughApart) {
   for (const double sigmas : {k_refused_sigmas, k_distinct_sigmas}) {
     double nearest = 1e9;
-    for (const Likeness& likeness : distinguish(nearly_equal_tools(sigmas), {0.0015, 9}).likenesses)
-      if (likeness.seen != likeness.other) nearest = std::min(nearest, likeness.distance_sigmas);
+    for (const WrongLabeling& labeling :
+         distinguish(nearly_equal_tools(sigmas), {0.0015, 9}).wrong_labelings)
+      if (labeling.seen != labeling.other) nearest = std::min(nearest, labeling.distance_sigmas);
     EXPECT_GT(nearest, sigmas);
     EXPECT_LT(nearest, sigmas + 0.1);
   }

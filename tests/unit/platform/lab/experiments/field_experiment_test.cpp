@@ -55,7 +55,7 @@ TEST(Field, CalibrationsFindADevicesErrorsAndStateWhatTheyLeave) {
       const Vector2 ideal = project(drawn.camera.model, ray).value;
       const Vector2 middle(drawn.camera.model.cx, drawn.camera.model.cy);
       sim::DeviceErrors lens = device.device;
-      lens.slow_centroid_px = 0;
+      lens.correlated_centroid_px = 0;
       off_px += project(cell.camera.model, ray).value - ideal -
                 sim::marker_error(lens, ideal, middle, 0.5, 0, {}).shift_px;
       ++rays;

@@ -70,11 +70,11 @@ TEST(PointFit, OfExactPointsIsExact) {
 }
 
 TEST(PredictionRun, JudgesNothingWithinASecondOfAGap) {
-  Judged judged(milliseconds(1000));
-  EXPECT_FALSE(judged(frame_time(44)));
-  EXPECT_FALSE(judged(frame_time(89)));  // the last second has no frames
-  for (int frame = 90; frame < 135; ++frame) EXPECT_FALSE(judged(frame_time(frame))) << frame;
-  EXPECT_TRUE(judged(frame_time(135)));
+  EvaluationWindow is_evaluated(milliseconds(1000));
+  EXPECT_FALSE(is_evaluated(frame_time(44)));
+  EXPECT_FALSE(is_evaluated(frame_time(89)));  // the last second has no frames
+  for (int frame = 90; frame < 135; ++frame) EXPECT_FALSE(is_evaluated(frame_time(frame))) << frame;
+  EXPECT_TRUE(is_evaluated(frame_time(135)));
 }
 
 TEST(MotionExperiments, MeetTheirBarsInAQuickRun) {
@@ -87,7 +87,7 @@ TEST(MotionExperiments, MeetTheirBarsInAQuickRun) {
 
 TEST(MotionExperiments, GiveTheSameFiguresAgain) {
   const CaseOptions options{true, 5, ".", "", {}};
-  EXPECT_EQ(case_table(run_rest(options)), case_table(run_rest(options)));
+  EXPECT_EQ(case_table(run_static_tool(options)), case_table(run_static_tool(options)));
 }
 
 TEST(MotionExperiments, NameARecordingThatIsMissing) {

@@ -11,8 +11,8 @@
 namespace glint {
 namespace {
 
-std::vector<sim::FrameTiming> schedule(const Mishaps& mishaps) {
-  return rates_schedule(hololens2_ahat(), mishaps, 1);
+std::vector<sim::FrameTiming> schedule(const FrameFaults& faults) {
+  return rates_schedule(hololens2_ahat(), faults, 1);
 }
 
 TEST(RatesSchedule, FallsToFiveHertzAndComesBack) {
@@ -26,25 +26,25 @@ TEST(RatesSchedule, FallsToFiveHertzAndComesBack) {
 
 TEST(RatesSchedule, GivesEachMishapItsPart) {
   const std::size_t all = schedule({}).size();
-  Mishaps mishaps;
-  mishaps.dropped = 0.2;
-  EXPECT_NEAR(static_cast<double>(schedule(mishaps).size()) / static_cast<double>(all), 0.8, 0.05);
-  mishaps = {};
-  mishaps.doubled = 0.2;
-  EXPECT_NEAR(static_cast<double>(schedule(mishaps).size()) / static_cast<double>(all), 1.2, 0.05);
-  mishaps = {};
-  mishaps.backward = 0.2;
+  FrameFaults faults;
+  faults.dropped = 0.2;
+  EXPECT_NEAR(static_cast<double>(schedule(faults).size()) / static_cast<double>(all), 0.8, 0.05);
+  faults = {};
+  faults.duplicated = 0.2;
+  EXPECT_NEAR(static_cast<double>(schedule(faults).size()) / static_cast<double>(all), 1.2, 0.05);
+  faults = {};
+  faults.backward = 0.2;
   double backward = 0;
-  for (const sim::FrameTiming& frame : schedule(mishaps)) {
+  for (const sim::FrameTiming& frame : schedule(faults)) {
     if (frame.mid_exposure != frame.exposed) ++backward;
   }
   EXPECT_NEAR(backward / static_cast<double>(all), 0.2, 0.05);
 }
 
 TEST(RatesSchedule, DeliversLateFramesBehindTheirSuccessors) {
-  Mishaps mishaps;
-  mishaps.late = 0.2;
-  const std::vector<sim::FrameTiming> frames = schedule(mishaps);
+  FrameFaults faults;
+  faults.late = 0.2;
+  const std::vector<sim::FrameTiming> frames = schedule(faults);
   int overtaken = 0;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     EXPECT_LE(frames[i - 1].arrival, frames[i].arrival);
@@ -54,9 +54,9 @@ TEST(RatesSchedule, DeliversLateFramesBehindTheirSuccessors) {
 }
 
 TEST(RatesSchedule, MovesExposuresWithTheirStamps) {
-  Mishaps mishaps;
-  mishaps.exposure_jitter = milliseconds(3);
-  const std::vector<sim::FrameTiming> frames = schedule(mishaps), steady = schedule({});
+  FrameFaults faults;
+  faults.exposure_jitter = milliseconds(3);
+  const std::vector<sim::FrameTiming> frames = schedule(faults), steady = schedule({});
   ASSERT_EQ(frames.size(), steady.size());
   Duration most;
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -8,8 +8,16 @@
 namespace glint {
 namespace {
 
-TryResult try_of(int number, const std::string& verdict, double shift_mm, double turn_deg) {
-  return {3, number, verdict, shift_mm, turn_deg, 4.5, 1.25, verdict == "accepted" ? "" : "a, b"};
+TryResult try_of(int number, const std::string& verdict, double translation_mm,
+                 double rotation_deg) {
+  return {3,
+          number,
+          verdict,
+          translation_mm,
+          rotation_deg,
+          4.5,
+          1.25,
+          verdict == "accepted" ? "" : "a, b"};
 }
 
 int class_of(TryFault fault) {
@@ -39,10 +47,10 @@ TEST(ReferenceTries, ReadsFinishedTriesOfItsRandomSeedAndNoLineThatIsCutShort) {
   ASSERT_EQ(tries.size(), 1u);
   EXPECT_EQ(tries[0].number, 0);
   EXPECT_EQ(tries[0].verdict, "refused");
-  EXPECT_EQ(tries[0].shift_mm, 700.5);
-  EXPECT_EQ(tries[0].turn_deg, 12.25);
+  EXPECT_EQ(tries[0].translation_mm, 700.5);
+  EXPECT_EQ(tries[0].rotation_deg, 12.25);
   EXPECT_EQ(tries[0].cpu_s, 1.25);
-  EXPECT_EQ(tries[0].why, "a, b");
+  EXPECT_EQ(tries[0].reason, "a, b");
 }
 
 TEST(ReferenceTries, CountsAWrongPoseOnlyIfItWasAccepted) {

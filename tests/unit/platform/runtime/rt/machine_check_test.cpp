@@ -34,10 +34,10 @@ class MachineCheckTest : public testing::Test {
     std::ofstream(path) << text << "\n";
   }
   // The single finding after the change.
-  std::string only() {
+  std::string single_finding() {
     const MachineCheck check = check_machine({1}, root_);
-    EXPECT_EQ(check.spoils.size(), 1u);
-    return check.spoils.empty() ? "" : check.spoils[0];
+    EXPECT_EQ(check.timing_faults.size(), 1u);
+    return check.timing_faults.empty() ? "" : check.timing_faults[0];
   }
   bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
@@ -48,46 +48,46 @@ class MachineCheckTest : public testing::Test {
 TEST_F(MachineCheckTest, FindsNothingOnAMachineThatIsSetUp) {
   const MachineCheck check = check_machine({1}, root_);
   EXPECT_TRUE(check.preempt_rt);
-  EXPECT_TRUE(check.spoils.empty()) << check.spoils[0];
+  EXPECT_TRUE(check.timing_faults.empty()) << check.timing_faults[0];
 }
 
 TEST_F(MachineCheckTest, SeesAKernelWithoutPreemptRt) {
   std::filesystem::remove(root_ + "/sys/kernel/realtime");
-  EXPECT_TRUE(contains(only(), "PREEMPT_RT"));
+  EXPECT_TRUE(contains(single_finding(), "PREEMPT_RT"));
 }
 
 TEST_F(MachineCheckTest, SeesThatRealTimeThreadsAreThrottled) {
   write("proc/sys/kernel/sched_rt_runtime_us", "950000");
-  EXPECT_TRUE(contains(only(), "sched_rt_runtime_us=-1"));
+  EXPECT_TRUE(contains(single_finding(), "sched_rt_runtime_us=-1"));
 }
 
 TEST_F(MachineCheckTest, SeesAMissingRightUnlessACapabilityGivesIt) {
   write("proc/self/limits", "Max realtime priority     0                    0");
-  EXPECT_TRUE(contains(only(), "SCHED_FIFO"));
+  EXPECT_TRUE(contains(single_finding(), "SCHED_FIFO"));
   write("proc/self/status", "CapEff:\t0000000000800000");
-  EXPECT_TRUE(check_machine({1}, root_).spoils.empty());
+  EXPECT_TRUE(check_machine({1}, root_).timing_faults.empty());
   write("proc/self/limits", "Max locked memory         65536                65536      bytes");
-  EXPECT_TRUE(contains(only(), "memlock"));
+  EXPECT_TRUE(contains(single_finding(), "memlock"));
 }
 
 TEST_F(MachineCheckTest, SeesAGovernorAnIdleStateAndAnInterruptOfOurCoreOnly) {
   write("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "powersave");
-  EXPECT_TRUE(check_machine({1}, root_).spoils.empty());
+  EXPECT_TRUE(check_machine({1}, root_).timing_faults.empty());
   write("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "schedutil");
-  EXPECT_TRUE(contains(only(), "core 1 has the governor \"schedutil\""));
+  EXPECT_TRUE(contains(single_finding(), "core 1 has the governor \"schedutil\""));
   write("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "performance");
   write("sys/devices/system/cpu/cpu1/cpuidle/state1/latency", "133");
-  EXPECT_TRUE(contains(only(), "133 us"));
+  EXPECT_TRUE(contains(single_finding(), "133 us"));
   write("sys/devices/system/cpu/cpu1/cpuidle/state1/disable", "1");
   write("proc/irq/9/effective_affinity_list", "0-1");
-  EXPECT_TRUE(contains(only(), "1 interrupts"));
+  EXPECT_TRUE(contains(single_finding(), "1 interrupts"));
 }
 
 TEST_F(MachineCheckTest, SaysThatThreadsAreNotPinned) {
   write("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance");
   const MachineCheck check = check_machine({-1, -1}, root_);
-  ASSERT_EQ(check.spoils.size(), 1u);
-  EXPECT_TRUE(contains(check.spoils[0], "not pinned"));
+  ASSERT_EQ(check.timing_faults.size(), 1u);
+  EXPECT_TRUE(contains(check.timing_faults[0], "not pinned"));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST(NodeTrace, KeepsWhenEachNodeRanAndWhatWasDecidedAfterIt) {
   trace.on_node_end(0);
   trace.on_node_begin(1);
   trace.on_node_end(1);
-  trace.note(k_span_overran);
+  trace.set_flag(k_span_overran);
   trace.end_activation();
   const std::int64_t all_ns = (monotonic_now() - begin).nanoseconds;
   TraceSpan first, second, none;

@@ -38,19 +38,20 @@ TEST(RealTimeThread, ReportsWhatItGotBeforeItsBodyRuns) {
 
 // An invalid priority is refused on every machine, even to a privileged process.
 TEST(RealTimeThread, RunsIdleWhereItIsToGiveWayAndItsPriorityIsRefused) {
-  for (const bool idle_otherwise : {true, false}) {
+  for (const bool idle_if_refused : {true, false}) {
     int policy = -1;
     ThreadSettings settings{"slices", -1, 100};
-    settings.idle_otherwise = idle_otherwise;
+    settings.idle_if_refused = idle_if_refused;
     RealTimeThread thread(settings, [&] {
       sched_param parameter{};
       pthread_getschedparam(pthread_self(), &policy, &parameter);
     });
     const std::string refused = thread.report().refused;
     thread.join();
-    EXPECT_EQ(policy, idle_otherwise ? SCHED_IDLE : SCHED_OTHER);
+    EXPECT_EQ(policy, idle_if_refused ? SCHED_IDLE : SCHED_OTHER);
     EXPECT_EQ(refused.find("SCHED_FIFO 100: "), 0U) << refused;
-    EXPECT_EQ(refused.find("(SCHED_IDLE instead)") != std::string::npos, idle_otherwise) << refused;
+    EXPECT_EQ(refused.find("(SCHED_IDLE instead)") != std::string::npos, idle_if_refused)
+        << refused;
   }
 }
 
@@ -68,9 +69,9 @@ TEST(WorkerRest, SpinsLongOnlyWhereEveryThreadGotACoreAndRealTimeRights) {
   granted.pinned = granted.real_time = true;
   ThreadReport refused = granted;
   refused.real_time = false;
-  EXPECT_EQ(WorkerRest({granted}, 100'000).spins_max(), 100'000u);
-  EXPECT_EQ(WorkerRest({granted, refused}, 100'000).spins_max(),
-            WorkerRest::k_shared_core_spins_max);
+  EXPECT_EQ(WorkerWaitPolicy({granted}, 100'000).spins_max(), 100'000u);
+  EXPECT_EQ(WorkerWaitPolicy({granted, refused}, 100'000).spins_max(),
+            WorkerWaitPolicy::k_shared_core_spins_max);
 }
 
 TEST(MemoryLock, SaysWhyWhereItIsRefused) {

@@ -89,10 +89,10 @@ struct Slept {
 };
 // Part 1 ends when the thread of part 0 sleeps, or after a time limit.
 struct AwaitSleep {
-  void operator()(const Caller& caller, Slice slice, Slept& slept) const noexcept {
+  void operator()(const Caller& caller, Partition partition, Slept& slept) const noexcept {
     const std::string path = "/proc/self/task/" + std::to_string(caller.thread) + "/stat";
     const Time limit = monotonic_now() + milliseconds(20'000);
-    while (slice.index == 1 && !slept.value && monotonic_now() < limit) {
+    while (partition.index == 1 && !slept.value && monotonic_now() < limit) {
       std::ifstream stat(path);
       const std::string text{std::istreambuf_iterator<char>(stat), {}};
       slept.value = text.find(") S ") != std::string::npos;
@@ -118,13 +118,13 @@ TEST(ParallelExecutor, SleepsWhileItWaitsForAnotherWorker) {
 }
 
 TEST(PlannedExecutor, SleepsWhileItWaitsForAnotherWorker) {
-  PlannedExecutor<AwaitGraph> two(plan_by_rule<AwaitGraph>(2), {{"worker"}}, 1000);
+  PlannedExecutor<AwaitGraph> two(default_schedule<AwaitGraph>(2), {{"worker"}}, 1000);
   AwaitGraph graph;
   graph.input<Caller>().thread = gettid();
   std::array<NoTrace, k_plan_workers_max> none;
   NoBoundary always;
   (void)two.execute(graph, std::span<NoTrace>(none), always);
-  two.settle(graph);
+  two.finish_activation(graph);
   EXPECT_TRUE(graph.output<Answer>().slept) << "it kept its core for 20 s";
 }
 

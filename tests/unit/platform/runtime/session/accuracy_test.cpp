@@ -13,14 +13,14 @@ namespace {
 
 struct FramesSeen {
   std::vector<FrameOutcome> outcomes;
-  std::vector<FrameTruth> truths;
+  std::vector<FrameGroundTruth> ground_truths;
 
   ToolOutcome& frame(std::int64_t ms, std::uint8_t visible, bool seen, double error_m = 0) {
-    FrameTruth truth;
+    FrameGroundTruth truth;
     truth.mid_exposure = Time{} + milliseconds(ms);
     truth.T_world_tool = {Pose{}};
     truth.visible_mask = {visible};
-    truths.push_back(std::move(truth));
+    ground_truths.push_back(std::move(truth));
     FrameOutcome outcome;
     outcome.tools[0].seen = seen;
     outcome.tools[0].T_camera_tool.translation.x() = error_m;
@@ -30,7 +30,7 @@ struct FramesSeen {
   [[nodiscard]] Accuracy judged() const {
     ToolSet tools;
     tools.count = 1;
-    return judge(outcomes, truths, tools);
+    return evaluate(outcomes, ground_truths, tools);
   }
 };
 
@@ -75,7 +75,7 @@ TEST(Accuracy, CountsADoubledFrameOnce) {
   FramesSeen run;
   run.frame(0, 0b1111, true);
   run.frame(0, 0b1111, false);
-  run.outcomes[1].verdict = Reason::frame_doubled;
+  run.outcomes[1].verdict = Reason::frame_duplicate;
   EXPECT_EQ(run.judged().refused, 1);
   EXPECT_EQ(run.judged().trackable, 1);
   EXPECT_EQ(run.judged().tracked, 1);
@@ -83,11 +83,11 @@ TEST(Accuracy, CountsADoubledFrameOnce) {
 
 TEST(Accuracy, LeavesOutAToolOnlyWhileItIsTakenOut) {
   FramesSeen run;
-  run.frame(0, 0b1111, false).there = false;
-  run.frame(20, 0b1111, false).there = false;  // the substitute of an overrun has no pose
+  run.frame(0, 0b1111, false).present = false;
+  run.frame(20, 0b1111, false).present = false;  // the substitute of an overrun has no pose
   run.outcomes[1].verdict = Reason::overrun_stopped;
   run.frame(40, 0b1111, true);
-  run.frame(60, 0b1111, false).there = false;
+  run.frame(60, 0b1111, false).present = false;
   run.outcomes[3].verdict = Reason::overrun_stopped;
   EXPECT_EQ(run.judged().trackable, 2);
   EXPECT_EQ(run.judged().refused, 0);

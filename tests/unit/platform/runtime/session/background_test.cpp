@@ -30,7 +30,7 @@ Cell with_mapping(Cell cell, const DepthFolder& folder) {
   cell.mapping.emplace();
   cell.mapping->source = folder.path;
   cell.mapping->period = milliseconds(50);
-  cell.mapping->pictures_a_map = 4;
+  cell.mapping->images_per_map = 4;
   cell.mapping->voxel_m = 0.02;
   cell.mapping->voxels_max = 20'000;
   return cell;
@@ -39,10 +39,10 @@ Cell with_mapping(Cell cell, const DepthFolder& folder) {
 BackgroundCounts counted_for(Duration time, Duration period, int steps) {
   Cell cell = with_background(default_cell(), period, steps);
   cell.mapping.emplace().voxels_max = 20'000;
-  const RunPlan plan = plan_by_rule(cell);
+  const RunSchedule plan = schedule_by_rule(cell);
   const TemporaryFolder pictures;
   DepthFolder folder(pictures.path());
-  folder.add_room(2);
+  folder.add_scene(2);
   BackgroundGroup group(cell, *plan.background, nullptr,
                         {{load_depth_sequence(folder.path), microseconds(1)}, {}, {}});
   std::atomic<bool> stop{false};
@@ -99,7 +99,7 @@ TEST(BackgroundRun, InOrderGivesTheSameBytesWithAndWithoutOne) {
 TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
   const TemporaryFolder plain, first, again, pictures;
   DepthFolder folder(pictures.path());
-  folder.add_room(3);
+  folder.add_scene(3);
   const Cell cell = with_mapping(short_cell(0.5), folder);
   const SessionResult without = short_run(short_cell(0.5), plain.path());
   const SessionResult one = short_run(cell, first.path());
@@ -114,8 +114,8 @@ TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
   EXPECT_GE(counts.map.pictures, 6);
   EXPECT_GE(counts.map.maps, 2);
   EXPECT_GE(counts.map.planes, 2);
-  EXPECT_EQ(counts.map.pictures + counts.pictures_missed,
-            two.background->map.pictures + two.background->pictures_missed);
+  EXPECT_EQ(counts.map.pictures + counts.images_missed,
+            two.background->map.pictures + two.background->images_missed);
 
   const HostCloud map = read_cloud(first.path() + "/map.ply");
   const HostCloud same = read_cloud(again.path() + "/map.ply");
@@ -123,15 +123,15 @@ TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
   EXPECT_EQ(map.normals, same.normals);
   EXPECT_EQ(static_cast<int>(map.points.size()), counts.map.smoothed);
   // Reference: the images forward and backward, as many as were shown.
-  ASSERT_EQ(counts.pictures_missed, 0);
+  ASSERT_EQ(counts.images_missed, 0);
   MapChain chain(map_settings_of(cell));
   const DepthLoop loop(load_depth_sequence(folder.path), cell.mapping->period);
   for (std::int64_t n = 1; n <= counts.map.pictures; ++n) {
-    const DepthFrame& frame = loop.picture(n);
+    const DepthFrame& frame = loop.image(n);
     chain.add_frame(frame.picture(), loop.camera(), frame.T_world_camera);
   }
   chain.finish();
-  chain.snap();
+  chain.project_onto_planes();
   EXPECT_EQ(counts.map.left_out, 0);
   EXPECT_EQ(host_cloud_of(chain.map()).points, map.points);
 }
@@ -155,7 +155,7 @@ TEST(BackgroundRun, LiveRunsItsSlicesTracesThemAndReplaysToTheSameHash) {
   const TemporaryFolder folder;
   const TemporaryFolder pictures;
   DepthFolder room(pictures.path());
-  room.add_room(2);
+  room.add_scene(2);
   Cell cell = with_mapping(short_cell(1.0), room);
   cell.text += "\n[background]\nperiod_ms = 2\n[mapping]\nsource = \"nowhere\"\n";
   cell.realtime = true;
@@ -197,9 +197,9 @@ TEST(BackgroundRun, TakesItsCorePriorityAndBoundsFromAPlan) {
   };
   add("frame", Tracker::node_count, 0, 45);
   add("tick", Output::node_count, 0, 48);
-  EXPECT_FALSE(plan_of(plan, model, "plan.toml").background);
+  EXPECT_FALSE(schedule_of(plan, model, "plan.toml").background);
   add("background", Background::node_count, 1, 42);
-  const RunPlan run = plan_of(plan, model, "plan.toml");
+  const RunSchedule run = schedule_of(plan, model, "plan.toml");
   ASSERT_TRUE(run.background);
   EXPECT_EQ(run.background->cores, std::vector<int>{1});
   EXPECT_EQ(run.background->priority, 42);
@@ -207,8 +207,8 @@ TEST(BackgroundRun, TakesItsCorePriorityAndBoundsFromAPlan) {
   const ThreadSettings thread = BackgroundGroup::thread_settings(*run.background);
   EXPECT_EQ(thread.core, 1);
   EXPECT_EQ(thread.priority, 42);
-  EXPECT_TRUE(thread.idle_otherwise);
-  EXPECT_FALSE(plan_by_rule(default_cell()).background);
+  EXPECT_TRUE(thread.idle_if_refused);
+  EXPECT_FALSE(schedule_by_rule(default_cell()).background);
 }
 
 }  // namespace

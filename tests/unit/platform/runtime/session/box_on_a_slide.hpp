@@ -12,12 +12,12 @@ namespace glint {
 inline constexpr double k_slide_shown_m = 0.1;
 
 // Converts the box's model in this file to a robot with a slide.
-inline RobotCloud on_a_slide(const std::string& path) {
+inline RobotCloud with_slide_joint(const std::string& path) {
   RobotCloud robot = read_robot_cloud(path);
   robot.links.push_back("carriage");
   robot.inputs = {"slide"};
   TreeJoint& slide = robot.tree.joints[0];
-  slide.kind = JointKind::sliding;
+  slide.kind = JointKind::prismatic;
   slide.axis = Vector3::UnitX();
   slide.input = 0;
   robot.tree.joint_count = robot.tree.input_count = 1;
@@ -27,9 +27,9 @@ inline RobotCloud on_a_slide(const std::string& path) {
 }
 
 // Replaces the model; its joint value is given as 0.
-inline void follow_a_box_on_a_slide(const std::string& folder, Cell& cell) {
-  follow_a_box(folder, 0, cell);
-  write_robot_cloud(cell.mapping->model, on_a_slide(cell.mapping->model));
+inline void configure_sliding_box(const std::string& folder, Cell& cell) {
+  configure_box_robot(folder, 0, cell);
+  write_robot_cloud(cell.mapping->model, with_slide_joint(cell.mapping->model));
   cell.mapping->joints = {0};
 }
 

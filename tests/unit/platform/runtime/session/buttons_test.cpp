@@ -18,7 +18,7 @@
 namespace glint {
 namespace {
 
-Cell cell_that_records() {
+Cell recording_cell() {
   Cell cell = default_cell();
   cell.dds.on = false;
   return cell;
@@ -27,7 +27,7 @@ Cell cell_that_records() {
 constexpr int k_events = 50001;  // a thread; after the last event its button is held
 
 // Each thread presses and releases its own button alternately.
-void say_by_three_threads(Sinks& sinks) {
+void offer_from_three_threads(Sinks& sinks) {
   std::array<std::thread, 3> threads;
   std::latch together(3);
   for (std::size_t t = 0; t < threads.size(); ++t) {
@@ -44,10 +44,10 @@ void say_by_three_threads(Sinks& sinks) {
 TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
   const TemporaryFolder folder;
   SinkOutcome outcome;
-  Cell cell = cell_that_records();
+  Cell cell = recording_cell();
   cell.realtime = false;  // offers wait while the queue is full
   Sinks sinks(cell, {folder.path(), false, {}}, 0);
-  say_by_three_threads(sinks);
+  offer_from_three_threads(sinks);
   sinks.close(outcome);
   EXPECT_TRUE(outcome.recording.complete());
   RecordingReader reader(outcome.recording_file);
@@ -67,10 +67,10 @@ TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
 TEST(ButtonsOfARun, AreHeldAsTheirEventsSayThoughSeveralThreadsSayThem) {
   const TemporaryFolder folder;
   SinkOutcome outcome;
-  Cell cell = cell_that_records();
+  Cell cell = recording_cell();
   cell.realtime = false;
   Sinks sinks(cell, {folder.path(), false, {}}, 0);
-  say_by_three_threads(sinks);
+  offer_from_three_threads(sinks);
   ASSERT_TRUE(sinks.held_buttons().sample());
   EXPECT_EQ(sinks.held_buttons().value().held, 7);
   EXPECT_EQ(sinks.held_buttons().version(), 3u * k_events);
@@ -94,7 +94,7 @@ TEST(ButtonsOfARun, AreHeldAsTheirEventsSayThoughSeveralThreadsSayThem) {
 
 TEST(ButtonsOfARun, AreHeldFromTheirPressToTheirReleaseAndChangeNothingWhenSaidAgain) {
   const TemporaryFolder folder;
-  Sinks sinks(cell_that_records(), {folder.path(), false, {}}, 0);
+  Sinks sinks(recording_cell(), {folder.path(), false, {}}, 0);
   graph::TripleBuffer<PenButtons>& held = sinks.held_buttons();
   std::int64_t time = 0;
   // Returns the held buttons after the event, or -1 if they did not change.
@@ -125,13 +125,13 @@ TEST(ButtonsOfARun, AreHeldFromTheirPressToTheirReleaseAndChangeNothingWhenSaidA
 TEST(ButtonsOfARun, LeaveInTheirBitsOfEveryTickWithoutAPoseToo) {
   for (const bool fd : {false, true}) {
     const TemporaryFolder folder;
-    Cell cell = cell_that_records();
+    Cell cell = recording_cell();
     cell.realtime = false;
     cell.can.fd = fd;
     Sinks sinks(cell, {folder.path(), false, {}}, 0);
-    TickSinks listening;
-    listening.can = sinks.can();
-    UnseenPen pen(cell, sinks, listening);
+    TickSinks tick_sinks;
+    tick_sinks.can = sinks.can();
+    TickGroupWithoutFrames pen(cell, sinks, tick_sinks);
     pen.tick();
     for (const auto& [button, pressed] :
          {std::pair{Button::draw, true}, std::pair{Button::undo, true},
@@ -152,12 +152,12 @@ TEST(ButtonsOfARun, LeaveInTheirBitsOfEveryTickWithoutAPoseToo) {
 
 TEST(ButtonsOfARun, AreSaidNotToBeHeardWhereNoBusCanBringThem) {
   const TemporaryFolder folder;
-  Cell cell = cell_that_records();
+  Cell cell = recording_cell();
   const auto why_not = [&] {
     SinkOutcome outcome;
     Sinks sinks(cell, {folder.path(), false, {}}, 0);
     sinks.close(outcome);
-    return outcome.can_not_heard;
+    return outcome.can_receive_error;
   };
   EXPECT_EQ(why_not(), "");
   cell.can.buttons = 0x190;

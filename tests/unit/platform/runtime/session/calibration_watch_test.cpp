@@ -31,7 +31,7 @@ std::vector<CalibrationFinding> findings_of(const sim::DeviceErrors& device) {
 const CalibrationFinding* named(const std::vector<CalibrationFinding>& findings) {
   const CalibrationFinding* found = nullptr;
   for (const CalibrationFinding& finding : findings) {
-    if (!finding.named) continue;
+    if (!finding.exceeds_stated) continue;
     EXPECT_EQ(found, nullptr) << name_of(finding.source);
     found = &finding;
   }
@@ -47,7 +47,7 @@ TEST(CalibrationWatch, NamesARangeOffset) {
     // The scale error within its stated limits explains the rest.
     EXPECT_NEAR(found->estimate, offset_m, 0.008);
     EXPECT_LT(std::abs(found->estimate - offset_m), 3 * found->sigma);
-    EXPECT_GT(found->stated_sigmas, 2.5);
+    EXPECT_GT(found->size_in_stated_sigmas, 2.5);
   }
 }
 
@@ -57,15 +57,15 @@ TEST(CalibrationWatch, NamesNothingOfADeviceAsStated) {
   EXPECT_EQ(named(findings), nullptr);
 }
 
-Cell cell_with_a_body(double seconds) {
+Cell cell_with_reference_body(double seconds) {
   Cell cell = short_cell(seconds, "outputs");
   cell.reference = cell.tools.count;
-  cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = reference_board();
+  cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = reference_body();
   return cell;
 }
 
 // A reference body on the table; the head sways and rotates.
-sim::Scenario looking_around(const Cell& cell) {
+sim::Scenario rotating_head_scenario(const Cell& cell) {
   sim::Scenario scenario = scenario_of(cell);
   sim::HeadSettings head;
   head.target_m = Vector3(0.44, 0, -0.2);
@@ -78,12 +78,13 @@ sim::Scenario looking_around(const Cell& cell) {
 
 std::vector<CalibrationFinding> findings_beside_a_body(double latency_s, double drift) {
   const TemporaryFolder folder;
-  const Cell cell = cell_with_a_body(k_seconds);
-  sim::Scenario scenario = looking_around(cell);
+  const Cell cell = cell_with_reference_body(k_seconds);
+  sim::Scenario scenario = rotating_head_scenario(cell);
   scenario.localisation.latency_s = latency_s;
   sim::LocalisationSettings& own = scenario.localisation;
   for (double* part : {&own.rest_position_m, &own.rest_angle_rad, &own.position_per_speed_s,
-                       &own.position_per_turn_m, &own.angle_per_speed_s_m, &own.angle_per_turn_s})
+                       &own.position_per_angular_speed_m, &own.angle_per_speed_s_m,
+                       &own.angle_per_angular_speed_s})
     *part *= drift;
   return short_run(cell, scenario, folder.path()).calibration;
 }
@@ -109,12 +110,12 @@ TEST(CalibrationWatch, NamesTheHeadsetsDriftByABodyAtRest) {
 
 // 4 s, then time stamps one hour earlier for 6 s: neither part alone has enough observations.
 TEST(CalibrationWatch, SeesTheBodyAfterTheStampsRestart) {
-  const Cell cell = cell_with_a_body(10);
-  const sim::Simulator simulator(looking_around(cell));
+  const Cell cell = cell_with_reference_body(10);
+  const sim::Simulator simulator(rotating_head_scenario(cell));
   const auto tracker = std::make_unique<Tracker>();
   configure(cell, *tracker);
   tracker->latest<ToolSet>().set(cell.tools, 1, 0);
-  CalibrationWatch watch(cell);
+  CalibrationMonitor watch(cell);
   sim::SimFrame frame;
   for (int i = 0; i < simulator.frame_count(); ++i) {
     simulator.render(i, frame);
@@ -125,7 +126,7 @@ TEST(CalibrationWatch, SeesTheBodyAfterTheStampsRestart) {
     tracker->input<Frame>() = frame.view();
     tracker->input<HeadPose>() = frame.head;
     tracker->activate();
-    watch.see(*tracker);
+    watch.add_frame(*tracker);
   }
   EXPECT_EQ(tracker->output<Estimates>().verdict.resynchronisations, 1u);
   const std::vector<CalibrationFinding> findings = watch.findings();
@@ -150,8 +151,8 @@ TEST(CalibrationWatch, IsAWarningOfDiagnostics) {
   finding.source = ErrorSource::range_offset;
   finding.estimate = 0.024;
   finding.sigma = 0.0011;
-  finding.stated_sigmas = 4;
-  CalibrationNotes notes;
+  finding.size_in_stated_sigmas = 4;
+  CalibrationFindingsStore notes;
   const auto entry = [&] {
     Diagnostics text;
     text.add_calibration(notes.all());
@@ -161,7 +162,7 @@ TEST(CalibrationWatch, IsAWarningOfDiagnostics) {
   notes.set({finding});
   EXPECT_EQ(entry().level, 0);
   EXPECT_EQ(entry().message, "as stated");
-  finding.named = true;
+  finding.exceeds_stated = true;
   notes.set({finding});
   EXPECT_EQ(entry().level, 1);
   EXPECT_EQ(entry().message,

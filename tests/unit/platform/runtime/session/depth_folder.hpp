@@ -15,7 +15,7 @@ struct DepthFolder {
   static constexpr int k_width = 80, k_height = 60;
   static constexpr double k_focal = 75;
   std::string path;
-  int pictures = 0;
+  int image_count = 0;
 
   explicit DepthFolder(const std::string& folder) : path(folder) {
     std::ofstream(path + "/camera-intrinsics.txt") << "75 0 39.5\n0 75 29.5\n0 0 1\n";
@@ -27,7 +27,7 @@ struct DepthFolder {
   }
 
   void add(const std::vector<float>& depth_m, const Pose& T_world_camera) {
-    const std::string stem = path + "/" + std::to_string(100 + pictures++);
+    const std::string stem = path + "/" + std::to_string(100 + image_count++);
     std::ofstream(stem + ".depth.npy", std::ios::binary)
         << npy_float32_bytes({{k_height, k_width}, depth_m});
     std::ofstream pose(stem + ".pose.txt");
@@ -41,7 +41,7 @@ struct DepthFolder {
   }
 
   // A wall and a floor, seen from positions side by side.
-  void add_room(int count) {
+  void add_scene(int count) {
     for (int p = 0; p < count; ++p) {
       const Pose pose{Quaternion::Identity(), Vector3(0.02 * p, 0, 0.01 * p)};
       std::vector<float> depth;

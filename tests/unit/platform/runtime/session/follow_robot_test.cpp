@@ -15,7 +15,7 @@ struct FollowedRobot {
   Cell cell;
 
   FollowedRobot(const char* level, double jump_m) : cell(short_cell(1.5, level)) {
-    follow_a_box(folder.path(), jump_m, cell);
+    configure_box_robot(folder.path(), jump_m, cell);
   }
 };
 
@@ -51,7 +51,7 @@ TEST(RobotThatJumps, IsRefusedAndStaysWhereItWas) {
   ASSERT_TRUE(run.background);
   EXPECT_GE(run.background->robot.followed, 3);
   EXPECT_GE(run.background->robot.jumps, 3) << name_of(run.background->robot.last);
-  EXPECT_NEAR(run.background->robot.shift_m, 0.03, 0.01);
+  EXPECT_NEAR(run.background->robot.translation_m, 0.03, 0.01);
   EXPECT_LT(
       (run.background->robot.frame.T_world_robot.translation - robot.cell.T_world_robot.translation)
           .norm(),

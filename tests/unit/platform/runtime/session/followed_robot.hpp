@@ -14,7 +14,7 @@
 
 namespace glint {
 
-inline void write_box_robot(const std::string& path, const test::Model& model) {
+inline void write_box_robot(const std::string& path, const test::BoxArm& model) {
   const test::SampledModel sampled(model, 0.006f);
   RobotCloud robot;
   robot.name = "box";
@@ -28,8 +28,8 @@ inline void write_box_robot(const std::string& path, const test::Model& model) {
 
 // Depth images of a robot without joints. It starts at the cell's pose and moves 0.5 mm aside with
 // each image. If `jump_m` is not 0, it jumps in the second half.
-inline void follow_a_box(const std::string& folder, double jump_m, Cell& cell) {
-  const test::Model model;
+inline void configure_box_robot(const std::string& folder, double jump_m, Cell& cell) {
+  const test::BoxArm model;
   write_box_robot(folder + "/robot.ply", model);
   DepthFolder depth(folder);
   constexpr int k_shown = 12;
@@ -52,7 +52,7 @@ inline void follow_a_box(const std::string& folder, double jump_m, Cell& cell) {
   mapping.source = folder;
   mapping.model = folder + "/robot.ply";
   mapping.period = milliseconds(100);
-  mapping.pictures_a_map = 100;
+  mapping.images_per_map = 100;
   mapping.voxels_max = 20'000;
 }
 

@@ -16,8 +16,8 @@ using graph::OverrunPolicy;
 
 // One frame in time, four successive overruns, one in time, one overrun. At the third overrun the
 // head pose is unknown: the prediction keeps the last valid one.
-constexpr int k_first = 12, k_judged = 7, k_without_head = k_first + 3;
-constexpr bool k_late_frames[k_judged] = {false, true, true, true, true, false, true};
+constexpr int k_first = 12, k_checked = 7, k_without_head = k_first + 3;
+constexpr bool k_late_frames[k_checked] = {false, true, true, true, true, false, true};
 
 bool is_late(int frame) { return frame >= k_first && k_late_frames[frame - k_first]; }
 
@@ -31,7 +31,7 @@ void expect_equal(const Estimates& found, const Estimates& expected) {
   const Track& a = found.tracks[0];
   const Track& b = expected.tracks[0];
   EXPECT_EQ(a.alive, b.alive);
-  EXPECT_EQ(a.seen_now, b.seen_now);
+  EXPECT_EQ(a.measured_now, b.measured_now);
   EXPECT_EQ(a.reason, b.reason);
   EXPECT_EQ(a.newest.time, b.newest.time);
   EXPECT_EQ(a.newest.pose.translation, b.newest.pose.translation);
@@ -44,13 +44,13 @@ class FrameGroupOverruns : public testing::TestWithParam<OverrunPolicy> {
   FrameGroupOverruns() : cell_(short_cell(1.0)) {
     cell_.overrun.frame = GetParam();
     const sim::Simulator simulator(scenario_of(cell_));
-    for (int i = 0; i < k_first + k_judged; ++i) {
+    for (int i = 0; i < k_first + k_checked; ++i) {
       simulator.render(i, frames_.emplace_back());
       frames_.back().head.valid = i != k_without_head;
     }
     watched_.live = false;
     watched_.watch = {true, cell_.deadlines.frame, GetParam(), {}};
-    for (int i = k_first; i < k_first + k_judged; ++i) {
+    for (int i = k_first; i < k_first + k_checked; ++i) {
       if (!is_late(i)) continue;
       const std::uint64_t at = frames_[static_cast<std::size_t>(i)].sequence;
       watched_.injections.push_back({"", 1, false, at, cell_.deadlines.frame + Duration{1}});
@@ -69,7 +69,7 @@ class FrameGroupOverruns : public testing::TestWithParam<OverrunPolicy> {
     const auto in_time = std::make_unique<Estimates>(), expected = std::make_unique<Estimates>(),
                held = std::make_unique<Estimates>();
     *held = group->estimates().value();
-    for (int i = 0; i < k_first + k_judged; ++i) {
+    for (int i = 0; i < k_first + k_checked; ++i) {
       SCOPED_TRACE("frame " + std::to_string(i));
       const sim::SimFrame& frame = frames_[static_cast<std::size_t>(i)];
       ArrivedFrame arrived;
@@ -77,7 +77,7 @@ class FrameGroupOverruns : public testing::TestWithParam<OverrunPolicy> {
       arrived.head = frame.head;
       group->process(arrived);
       if (i == k_first) {
-        ASSERT_TRUE(group->newest().tracks[0].seen_now);
+        ASSERT_TRUE(group->newest().tracks[0].measured_now);
       }
       bool published = true;
       if (is_late(i)) {
@@ -104,7 +104,7 @@ class FrameGroupOverruns : public testing::TestWithParam<OverrunPolicy> {
 };
 
 TEST_P(FrameGroupOverruns, RestOnWhatWasInTimeWheneverTheReaderTakesIt) {
-  for (unsigned taken = 0; taken < 1u << k_judged; ++taken) run(taken);
+  for (unsigned taken = 0; taken < 1u << k_checked; ++taken) run(taken);
 }
 
 INSTANTIATE_TEST_SUITE_P(ByEvery, FrameGroupOverruns,

@@ -34,7 +34,7 @@ TEST(Latency, LogKeepsTheNewestAndTheLargestInTheRoomOfTheStart) {
   for (const int ms : {1, 9, 2, 3, 4, 5, 6}) log.add({milliseconds(ms), {}, {}});
   ASSERT_EQ(log.entries().size(), 3u);
   EXPECT_EQ(log.entries().data(), room);
-  EXPECT_EQ(log.left_out(), 4);
+  EXPECT_EQ(log.overwritten(), 4);
   std::vector<std::int64_t> left;
   for (const FrameToCan& entry : log.entries()) left.push_back(entry.total().nanoseconds);
   std::sort(left.begin(), left.end());

@@ -18,7 +18,7 @@ TickOfFrames tick_of(std::uint64_t last, int at_ms, TrackState state) {
   tick.last = last;
   tick.at = Time{} + milliseconds(at_ms);
   tick.tools = 1;
-  tick.whole = true;
+  tick.all_accepted = true;
   tick.states[0] = state;
   return tick;
 }
@@ -30,24 +30,24 @@ TEST(SentTicks, CountsATickWhenItsLastFrameHasLeft) {
   first.latency.computing = microseconds(7);
   ticks.add(first, 0);
   ticks.add(tick_of(10, 4, TrackState::lost), 4);
-  EXPECT_EQ(ticks.left().ticks, 0u);
+  EXPECT_EQ(ticks.summary().ticks, 0u);
   EXPECT_TRUE(ticks.latencies().entries().empty());
   ticks.settle(9);
-  EXPECT_EQ(ticks.left().ticks, 1u);
-  EXPECT_EQ(ticks.left().tools[0].measured, 1u);
+  EXPECT_EQ(ticks.summary().ticks, 1u);
+  EXPECT_EQ(ticks.summary().tools[0].measured, 1u);
   EXPECT_EQ(ticks.latencies().entries().size(), 1u);
   ticks.settle(10);
-  EXPECT_EQ(ticks.left().tools[0].lost, 1u);
+  EXPECT_EQ(ticks.summary().tools[0].lost, 1u);
 }
 
 TEST(SentTicks, LeavesOutATickOfWhichAFrameWasRefused) {
   SentTicks ticks(4);
   TickOfFrames broken = tick_of(3, 0, TrackState::measured);
-  broken.whole = false;
+  broken.all_accepted = false;
   broken.carries = true;  // its first frame was sent
   ticks.add(broken, 3);
   ticks.settle(3);
-  EXPECT_EQ(ticks.left().ticks, 0u);
+  EXPECT_EQ(ticks.summary().ticks, 0u);
   EXPECT_EQ(ticks.latencies().entries().size(), 1u);
 }
 
@@ -62,12 +62,12 @@ TEST(SentTicks, MeasuresGapsToEitherEnd) {
   add(104, TrackState::measured);
   add(116, TrackState::predicted);
   ticks.settle(frames);
-  EXPECT_EQ(ticks.left().longest_gap, milliseconds(12));
-  EXPECT_EQ(ticks.left().tools[0].longest_without_measurement, milliseconds(12));
+  EXPECT_EQ(ticks.summary().longest_gap, milliseconds(12));
+  EXPECT_EQ(ticks.summary().tools[0].longest_without_measurement, milliseconds(12));
   add(120, TrackState::lost);
   ticks.settle(frames);
-  EXPECT_EQ(ticks.left().tools[0].longest_without_measurement, milliseconds(16));
-  EXPECT_EQ(ticks.left().tools[0].none, 1u);
+  EXPECT_EQ(ticks.summary().tools[0].longest_without_measurement, milliseconds(16));
+  EXPECT_EQ(ticks.summary().tools[0].none, 1u);
 }
 
 TEST(SentTicks, KeepsCountingInFixedMemoryAfterTheSinkFailed) {
@@ -75,7 +75,7 @@ TEST(SentTicks, KeepsCountingInFixedMemoryAfterTheSinkFailed) {
   for (std::uint64_t i = 1; i < 3 * k_can_in_flight_max; ++i) {
     ticks.add(tick_of(i, static_cast<int>(i), TrackState::measured), 2);
   }
-  EXPECT_EQ(ticks.left().ticks, 2u);
+  EXPECT_EQ(ticks.summary().ticks, 2u);
 }
 
 // Keeps every frame; rejects frames from a given number on.
@@ -122,10 +122,10 @@ TEST(LossEmergency, IsAtMostOneFrameASecondAndKind) {
   Sinks sinks(cell, options, 0);
   KeptFrames can;
   LossCounters losses;
-  TickSinks listening;
-  listening.can = &can;
-  listening.losses = &losses;
-  UnseenPen pen(cell, sinks, listening);
+  TickSinks tick_sinks;
+  tick_sinks.can = &can;
+  tick_sinks.losses = &losses;
+  TickGroupWithoutFrames pen(cell, sinks, tick_sinks);
   for (int i = 0; i < 100; ++i) pen.tick();
   EXPECT_TRUE(can.emergencies(LossKind::recording).empty()) << "nothing was lost yet";
   for (std::uint64_t i = 1; i <= 600; ++i) {  // 2.4 s
@@ -152,10 +152,10 @@ TEST(LossEmergency, IsNotSentForCanItself) {
   Sinks sinks(cell, options, 0);
   KeptFrames can(10);
   LossCounters losses;
-  TickSinks listening;
-  listening.can = &can;
-  listening.losses = &losses;
-  UnseenPen pen(cell, sinks, listening);
+  TickSinks tick_sinks;
+  tick_sinks.can = &can;
+  tick_sinks.losses = &losses;
+  TickGroupWithoutFrames pen(cell, sinks, tick_sinks);
   for (int i = 0; i < 20; ++i) pen.tick();
   EXPECT_GT(losses.of(LossKind::can), 80u);
   EXPECT_TRUE(can.emergencies(LossKind::can).empty());
@@ -201,7 +201,7 @@ TEST(LostOutput, NamesEachKindWithItsCount) {
   SinkOutcome outcome;
   outcome.can.dropped = 1;
   outcome.dds.ring_dropped = 2;
-  outcome.dds.others_lost = 3;
+  outcome.dds.poses_and_transforms_lost = 3;
   outcome.dds_was_read = true;
   outcome.dds_reader.missed = 4;
   outcome.recording.dropped = 5;
@@ -213,10 +213,10 @@ TEST(LostOutput, NamesEachKindWithItsCount) {
   for (const Loss& loss : losses_of(outcome)) counts.push_back(loss.count);
   EXPECT_EQ(counts, (std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6, 7, 0}));
   outcome = {};
-  outcome.dds_not_read = "dds: the reader process was ended by signal 9";
+  outcome.dds_reader_error = "dds: the reader process was ended by signal 9";
   ASSERT_EQ(lines_of(losses_of(outcome)).size(), 1u);
   EXPECT_EQ(lines_of(losses_of(outcome))[0],
-            "lost, DDS: what was received is unknown: " + outcome.dds_not_read);
+            "lost, DDS: what was received is unknown: " + outcome.dds_reader_error);
 }
 
 TEST(SlowSource, IsBlamedForTheTicksWithoutAMeasurement) {
@@ -245,7 +245,7 @@ TEST(SlowSource, IsNotBlamedWhereItIsInTime) {
 TEST(SeedMethod, GivesPosesInASession) {
   const TemporaryFolder folder;
   Cell cell = short_cell(1, "outputs");
-  cell.method = Method::seed;
+  cell.method = Method::baseline;
   const SessionResult run = short_run(cell, folder.path());
   EXPECT_GT(run.accuracy.poses, run.frames / 2);
   EXPECT_GT(run.sent.tools[0].measured, run.sent.ticks / 2);

@@ -43,7 +43,7 @@ PoseSample sample_at(Time tick, TrackState state, const Vector3& error, double s
 // Frame rate from the interval of the two newest frames, or from the newest frame's age.
 TEST(OutputFigures, SortTicksByTheFramesRate) {
   const Cell cell = judged_cell();
-  OutputFigures figures(cell, {});
+  OutputStatistics figures(cell, {});
   const auto add = [&](std::int64_t tick_ms, std::optional<Time> newest) {
     figures.add(sample_at(ms_after_start(tick_ms), TrackState::lost, Vector3::Zero(), 1), newest);
   };
@@ -70,7 +70,7 @@ TEST(OutputFigures, SortTicksByTheFramesRate) {
 
 TEST(OutputFigures, JudgePosesAtTheTimeThatTheyAreFor) {
   const Cell cell = judged_cell();
-  OutputFigures figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
+  OutputStatistics figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
   const std::vector<Vector3> errors{{0.003, 0, 0}, {0, -0.004, 0}, {0, 0, 0.0027}};
   // Standard deviation 1 mm on each axis: the 95 % ellipsoid has a radius of 2.795 mm.
   for (const Vector3& error : errors) {
@@ -83,7 +83,7 @@ TEST(OutputFigures, JudgePosesAtTheTimeThatTheyAreFor) {
       sample_at(ms_after_start(10), TrackState::measured, Vector3(1, 1, 1), 0.001);
   in_camera.frame = ReferenceFrame::camera;
   figures.add(in_camera, ms_after_start(9));
-  const RateFigures& rate = figures.figures().tools[0][0];
+  const RateStatistics& rate = figures.figures().tools[0][0];
   EXPECT_EQ(rate.measured, 4u);
   EXPECT_EQ(rate.predicted, 1u);
   EXPECT_NEAR(quantile(rate.ages, 0.5), 11.5, 1e-12);
@@ -103,7 +103,7 @@ TEST(OutputFigures, JudgePosesAtTheTimeThatTheyAreFor) {
 // Gross: more than 15 degrees, or more than both 20 mm and three stated standard deviations.
 TEST(OutputFigures, CountGrossPoses) {
   const Cell cell = judged_cell();
-  OutputFigures figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
+  OutputStatistics figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
   const auto add = [&](double off_m, double sigma_m, double turned_deg) {
     PoseSample sample = sample_at(ms_after_start(10), TrackState::measured, {off_m, 0, 0}, sigma_m);
     sample.pose.rotation = from_rotation_vector(Vector3(0, turned_deg * k_radians_per_degree, 0));
@@ -120,7 +120,7 @@ TEST(OutputFigures, CountGrossPoses) {
 TEST(OutputFigures, JudgeInTheRobotsFrameAndRotations) {
   Cell cell = judged_cell();
   cell.T_world_robot = {from_rotation_vector(Vector3(0, 0, 1)), Vector3(1, 2, 3)};
-  OutputFigures figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
+  OutputStatistics figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
   PoseSample sample = sample_at(ms_after_start(10), TrackState::measured, Vector3::Zero(), 0.01);
   sample.frame = ReferenceFrame::robot;
   const Pose turned{from_rotation_vector(Vector3(0.03, 0, 0)), Vector3::Zero()};

@@ -86,16 +86,16 @@ class OverrunMatrix : public testing::TestWithParam<Parameters> {
     inject(frame_rows_, false, options_.injections);
     inject(tick_rows_, true, options_.injections);
     if (!bounded_) return;
-    options_.plan = plan_by_rule(cell_);
+    options_.plan = schedule_by_rule(cell_);
     options_.plan.planned = true;
     options_.plan.frame.bounds_ns = options_.plan.frame.remaining_ns = node_bounds<Tracker>();
     options_.plan.tick.bounds_ns = options_.plan.tick.remaining_ns = node_bounds<Output>();
   }
 
   void expect_decisions(const SessionResult& run, const OverrunLog& log) const;
-  void expect_what_ticks_sent(const OverrunLog& log) const;
-  void expect_what_frames_published(const OverrunLog& log) const;
-  static void expect_replays_alike(const SessionResult& run);
+  void expect_tick_outputs(const OverrunLog& log) const;
+  void expect_frame_outputs(const OverrunLog& log) const;
+  static void expect_identical_replay(const SessionResult& run);
 
   OverrunPolicy policy_ = std::get<0>(GetParam());
   bool bounded_ = std::get<1>(GetParam());
@@ -151,7 +151,7 @@ void expect_motion(OverrunPolicy policy, const PoseSample& before, const PoseSam
   }
 }
 
-void OverrunMatrix::expect_what_ticks_sent(const OverrunLog& log) const {
+void OverrunMatrix::expect_tick_outputs(const OverrunLog& log) const {
   for (const Row& row : tick_rows_) {
     SCOPED_TRACE("tick " + std::to_string(row.at));
     ASSERT_EQ(log.outputs.count(row.at), policy_ == OverrunPolicy::skip_output ? 0u : 1u);
@@ -172,7 +172,7 @@ void OverrunMatrix::expect_what_ticks_sent(const OverrunLog& log) const {
   }
 }
 
-void OverrunMatrix::expect_what_frames_published(const OverrunLog& log) const {
+void OverrunMatrix::expect_frame_outputs(const OverrunLog& log) const {
   std::map<std::uint64_t, int> read;  // number of ticks that read each late frame's estimates
   int moving = 0;                     // checked poses of a tool that was not static
   for (const Row& row : frame_rows_) read[log.activations.at(row.at)] = 0;
@@ -204,7 +204,7 @@ void OverrunMatrix::expect_what_frames_published(const OverrunLog& log) const {
   }
 }
 
-void OverrunMatrix::expect_replays_alike(const SessionResult& run) {
+void OverrunMatrix::expect_identical_replay(const SessionResult& run) {
   for (const int workers : {1, 2}) {
     const ReplayResult result = expect_same_bytes(run.recording_file, run, workers);
     EXPECT_EQ(result.overruns, Tracker::node_count + Output::node_count);
@@ -216,9 +216,9 @@ TEST_P(OverrunMatrix, HasItsDeclaredEffectOnceAtEveryNodeAndReplaysToTheSameByte
   ASSERT_TRUE(run.recording.complete());
   const OverrunLog log = overrun_log(run.recording_file, folder_.path() + "/can.log");
   expect_decisions(run, log);
-  expect_what_ticks_sent(log);
-  expect_what_frames_published(log);
-  expect_replays_alike(run);
+  expect_tick_outputs(log);
+  expect_frame_outputs(log);
+  expect_identical_replay(run);
 }
 
 INSTANTIATE_TEST_SUITE_P(

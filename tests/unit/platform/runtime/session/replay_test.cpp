@@ -147,20 +147,20 @@ TEST(Replay, RefusesARecordingWithoutAnOutputRecord) {
   }
 }
 
-// Reorders the records of activations. `place` returns the position of frame v's records, or of
+// Reorders the records of activations. `position` returns the position of frame v's records, or of
 // those of the n-th tick that read frame v.
-using Place = std::function<double(bool is_tick, std::uint64_t v, int n)>;
-void move_records(std::vector<RecordedMessage>& messages, const Place& place) {
+using RecordPosition = std::function<double(bool is_tick, std::uint64_t v, int n)>;
+void move_records(std::vector<RecordedMessage>& messages, const RecordPosition& position) {
   std::vector<std::pair<double, RecordedMessage>> placed;
   std::uint64_t frames = 0, read = 0;
   int n = 0;
   double at = 0;
   for (RecordedMessage& message : messages) {
-    if (std::holds_alternative<HeadPose>(message)) at = place(false, ++frames, 0);
+    if (std::holds_alternative<HeadPose>(message)) at = position(false, ++frames, 0);
     if (const auto* choice = std::get_if<ChoiceRecord>(&message);
         choice != nullptr && choice->group == k_tick_group) {
       n = read == choice->versions[0] ? n + 1 : 1;
-      at = place(true, read = choice->versions[0], n);
+      at = position(true, read = choice->versions[0], n);
     }
     placed.emplace_back(at, std::move(message));
   }
@@ -183,10 +183,10 @@ class ReplayOfOtherOrder : public testing::TestWithParam<graph::OverrunPolicy> {
     options.injections.push_back({"", 0, true, 100, cell.deadlines.tick + Duration{1}});
     return run_simulated(cell, options);
   }
-  std::string moved(const SessionResult& run, const Place& place) const {
+  std::string moved(const SessionResult& run, const RecordPosition& position) const {
     std::string file = folder_.path() + "/moved.mcap";
     rewrite(run.recording_file, file,
-            [&](std::vector<RecordedMessage>& messages) { move_records(messages, place); });
+            [&](std::vector<RecordedMessage>& messages) { move_records(messages, position); });
     return file;
   }
   TemporaryFolder folder_;

@@ -15,7 +15,7 @@ namespace glint {
 inline SessionResult run_with_buttons(const Cell& cell, const std::vector<ButtonEvent>& events,
                                       SessionOptions options) {
   const sim::Simulator simulator(scenario_of(cell));
-  options.plan = plan_by_rule(cell);
+  options.plan = schedule_by_rule(cell);
   Time now;
   const Clock clock = [&now] { return now; };
   Sinks sinks(cell, options, 0);
@@ -34,7 +34,7 @@ inline SessionResult run_with_buttons(const Cell& cell, const std::vector<Button
   };
   const auto on_frame = [&](const NextRelease& release) {
     now = release.nominal;
-    groups->reach(now);
+    groups->apply_changes(now);
     groups->process(*release.frame);
   };
   NominalOrder order(cell, source, nullptr);

@@ -7,7 +7,7 @@ namespace glint {
 namespace {
 
 // The pen is present for 1 s, absent for 0.5 s, then present again.
-Cell pen_goes_and_comes(const char* level) {
+Cell pen_removed_and_added(const char* level) {
   Cell cell = short_cell(2.5, level);
   cell.tool_changes = {{Time{1'000'000'000}, 0}, {Time{1'500'000'000}, k_all_tools}};
   return cell;
@@ -17,12 +17,12 @@ class ToolsThatChange : public testing::TestWithParam<const char*> {};
 
 TEST_P(ToolsThatChange, AreNotTrackedWhileTheyAreAway) {
   TemporaryFolder folder;
-  const SessionResult run = short_run(pen_goes_and_comes(GetParam()), folder.path());
+  const SessionResult run = short_run(pen_removed_and_added(GetParam()), folder.path());
   int away = 0, seen_before = 0, seen_after = 0;
   for (std::size_t f = 0; f < run.outcomes.size(); ++f) {
     const ToolOutcome& pen = run.outcomes[f].tools[0];
-    away += pen.there ? 0 : 1;
-    if (!pen.there) {
+    away += pen.present ? 0 : 1;
+    if (!pen.present) {
       EXPECT_FALSE(pen.seen) << f;
       EXPECT_EQ(pen.reason, Reason::tool_changed) << f;
     }
@@ -35,7 +35,7 @@ TEST_P(ToolsThatChange, AreNotTrackedWhileTheyAreAway) {
 
 TEST_P(ToolsThatChange, AreTheSameInAReplay) {
   TemporaryFolder folder;
-  const SessionResult run = short_run(pen_goes_and_comes(GetParam()), folder.path());
+  const SessionResult run = short_run(pen_removed_and_added(GetParam()), folder.path());
   for (const int workers : {1, 2}) expect_same_bytes(run.recording_file, run, workers);
 }
 
@@ -43,18 +43,18 @@ INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ToolsThatChange, testing::Values("full", 
                          [](const auto& level) { return std::string(level.param); });
 
 TEST(ToolRoster, PublishesEachChangeOnceInATellingVersion) {
-  const Cell cell = pen_goes_and_comes("roi");
+  const Cell cell = pen_removed_and_added("roi");
   ToolRoster roster(cell);
   auto& published = roster.published();
   ASSERT_TRUE(published.sample());
   EXPECT_EQ(published.version(), tools_version(1, k_all_tools));
-  roster.reach(Time{999'999'999});
+  roster.apply_changes(Time{999'999'999});
   EXPECT_FALSE(published.sample());
-  roster.reach(Time{1'000'000'000});
+  roster.apply_changes(Time{1'000'000'000});
   ASSERT_TRUE(published.sample());
   EXPECT_EQ(tools_in(published.version()), 0);
   EXPECT_FALSE(published.value().items[0].present());
-  roster.reach(Time{3'000'000'000});
+  roster.apply_changes(Time{3'000'000'000});
   ASSERT_TRUE(published.sample());
   EXPECT_EQ(published.version(), tools_version(3, k_all_tools));
   EXPECT_TRUE(published.value().items[0].present());
@@ -69,7 +69,7 @@ TEST(ToolRoster, TakesUpWhatWasAskedForBesideTheCellsChanges) {
   ToolRequests requests;
   ToolRoster roster(cell, &requests);
   const auto there_at = [&](std::int64_t ns) {
-    roster.reach(Time{ns});
+    roster.apply_changes(Time{ns});
     (void)roster.published().sample();
     return tools_in(roster.published().version());
   };

@@ -8,13 +8,13 @@
 
 namespace glint {
 
-class UnseenPen {
+class TickGroupWithoutFrames {
  public:
-  // `listening`: the sinks that receive the ticks.
-  UnseenPen(const Cell& cell, Sinks& sinks, const TickSinks& listening)
+  // `tick_sinks`: the sinks that receive the ticks.
+  TickGroupWithoutFrames(const Cell& cell, Sinks& sinks, const TickSinks& tick_sinks)
       : runner_(in_order()),
         group_(
-            cell, estimates_, robot_, sinks.held_buttons(), [this] { return now_; }, listening, 0,
+            cell, estimates_, robot_, sinks.held_buttons(), [this] { return now_; }, tick_sinks, 0,
             1, runner_, notes_) {
     estimates_.write_slot().tool_count = 1;
     estimates_.publish(1, 0);

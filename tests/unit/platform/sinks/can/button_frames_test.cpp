@@ -21,7 +21,7 @@ CanFrame held(std::uint8_t bits) {
   return frame;
 }
 
-struct Heard {
+struct ReceivedEvents {
   std::vector<ButtonEvent> events;
   ButtonFrames frames{k_identifier, [this](const ButtonEvent& event) { events.push_back(event); }};
 };
@@ -38,67 +38,67 @@ std::optional<CanFrame> from_kernel(std::uint32_t id, std::uint8_t length, std::
 }
 
 TEST(ButtonFrames, SayEachChangeOfEachButtonOnce) {
-  Heard heard;
-  heard.frames.hear(held(0b0001), {10});
-  heard.frames.hear(held(0b0001), {20});  // repeated: no event
-  heard.frames.hear(held(0b1010), {30});
-  heard.frames.hear(held(0b0000), {40});
+  ReceivedEvents received;
+  received.frames.receive(held(0b0001), {10});
+  received.frames.receive(held(0b0001), {20});  // repeated: no event
+  received.frames.receive(held(0b1010), {30});
+  received.frames.receive(held(0b0000), {40});
   const std::vector<ButtonEvent> expected{
       {{10}, Button::draw, true},         {{30}, Button::draw, false},
       {{30}, Button::delete_last, true},  {{30}, Button::finish, true},
       {{40}, Button::delete_last, false}, {{40}, Button::finish, false}};
-  EXPECT_EQ(heard.events, expected);
-  EXPECT_EQ(heard.frames.counts().heard, 4u);
-  heard.frames.hear(held(0b0100), {50});
-  EXPECT_EQ(heard.events.back(), (ButtonEvent{{50}, Button::undo, true}));
+  EXPECT_EQ(received.events, expected);
+  EXPECT_EQ(received.frames.counts().received, 4u);
+  received.frames.receive(held(0b0100), {50});
+  EXPECT_EQ(received.events.back(), (ButtonEvent{{50}, Button::undo, true}));
 }
 
 TEST(ButtonFrames, ReleaseWhatASilentSenderHeld) {
-  Heard heard;
-  heard.frames.hear(held(0b1001), {0});
-  heard.frames.hear(held(0b1001), {5'000'000'000});  // repeated: the timeout restarts
-  heard.frames.release_if_silent(Time{5'000'000'000} + k_button_timeout);
-  EXPECT_EQ(heard.events.size(), 2u) << "released before its timeout";
+  ReceivedEvents received;
+  received.frames.receive(held(0b1001), {0});
+  received.frames.receive(held(0b1001), {5'000'000'000});  // repeated: the timeout restarts
+  received.frames.release_on_timeout(Time{5'000'000'000} + k_button_timeout);
+  EXPECT_EQ(received.events.size(), 2u) << "released before its timeout";
   const Time late = Time{5'000'000'001} + k_button_timeout;
-  heard.frames.release_if_silent(late);
-  heard.frames.release_if_silent(late + milliseconds(1));
-  ASSERT_EQ(heard.events.size(), 4u);
-  EXPECT_EQ(heard.events[2], (ButtonEvent{late, Button::draw, false}));
-  EXPECT_EQ(heard.events[3], (ButtonEvent{late, Button::finish, false}));
-  EXPECT_EQ(heard.frames.counts().released, 2u);
-  heard.frames.hear(held(0b0001), late + milliseconds(2));  // the sender sends again
-  EXPECT_EQ(heard.events.back(), (ButtonEvent{late + milliseconds(2), Button::draw, true}));
+  received.frames.release_on_timeout(late);
+  received.frames.release_on_timeout(late + milliseconds(1));
+  ASSERT_EQ(received.events.size(), 4u);
+  EXPECT_EQ(received.events[2], (ButtonEvent{late, Button::draw, false}));
+  EXPECT_EQ(received.events[3], (ButtonEvent{late, Button::finish, false}));
+  EXPECT_EQ(received.frames.counts().released, 2u);
+  received.frames.receive(held(0b0001), late + milliseconds(2));  // the sender sends again
+  EXPECT_EQ(received.events.back(), (ButtonEvent{late + milliseconds(2), Button::draw, true}));
 }
 
 TEST(ButtonFrames, LookAtNothingBeyondTheFourBits) {
-  Heard heard;
+  ReceivedEvents received;
   CanFrame frame = held(0xF0);
   frame.length = 8;
   frame.data[1] = 0xFF;
-  heard.frames.hear(frame, {});
-  EXPECT_TRUE(heard.events.empty());
-  EXPECT_EQ(heard.frames.counts().heard, 1u);
+  received.frames.receive(frame, {});
+  EXPECT_TRUE(received.events.empty());
+  EXPECT_EQ(received.frames.counts().received, 1u);
 }
 
 TEST(ButtonFrames, RefuseAndCountWhatIsNoButtonsFrame) {
-  Heard heard;
+  ReceivedEvents received;
   CanFrame empty = held(1), other = held(1), extended = held(1);
   empty.length = 0;
   other.identifier = k_identifier + 1;
   extended.extended = true;
-  for (const CanFrame& frame : {empty, other, extended}) heard.frames.hear(frame, {});
-  heard.frames.hear({}, {});
-  EXPECT_TRUE(heard.events.empty());
-  EXPECT_EQ(heard.frames.counts().heard, 0u);
-  EXPECT_EQ(heard.frames.counts().refused, 4u);
+  for (const CanFrame& frame : {empty, other, extended}) received.frames.receive(frame, {});
+  received.frames.receive({}, {});
+  EXPECT_TRUE(received.events.empty());
+  EXPECT_EQ(received.frames.counts().received, 0u);
+  EXPECT_EQ(received.frames.counts().refused, 4u);
 }
 
 TEST(ButtonFrames, CountWithoutACallback) {
   ButtonFrames frames(k_identifier, {}, milliseconds(1));
   EXPECT_FALSE(frames.counts().any());
-  frames.hear(held(0b0011), {10});
-  frames.release_if_silent(Time{11} + milliseconds(1));
-  EXPECT_EQ(frames.counts().heard, 1u);
+  frames.receive(held(0b0011), {10});
+  frames.release_on_timeout(Time{11} + milliseconds(1));
+  EXPECT_EQ(frames.counts().received, 1u);
   EXPECT_EQ(frames.counts().released, 2u);
 }
 
@@ -169,7 +169,7 @@ TEST(FrameOfSocketCan, IsNothingElse) {
 
 TEST(FrameOfSocketCan, KeepsToItsBoundsWhateverTheBytes) {
   std::mt19937 random(7);
-  Heard heard;
+  ReceivedEvents received;
   int data_frames = 0;
   for (int i = 0; i < 20'000; ++i) {
     std::vector<std::uint8_t> bytes(i % 3 == 0 ? random() % 80 : i % 3 == 1 ? CAN_MTU : CANFD_MTU);
@@ -181,11 +181,11 @@ TEST(FrameOfSocketCan, KeepsToItsBoundsWhateverTheBytes) {
       ASSERT_LE(frame->identifier,
                 frame->extended ? k_can_extended_identifier_max : k_can_identifier_max);
     }
-    heard.frames.hear(frame, {i});
+    received.frames.receive(frame, {i});
   }
   EXPECT_GT(data_frames, 100);
-  const ButtonFrameCounts counts = heard.frames.counts();
-  EXPECT_EQ(counts.heard + counts.refused, 20'000u);
+  const ButtonFrameCounts counts = received.frames.counts();
+  EXPECT_EQ(counts.received + counts.refused, 20'000u);
 }
 
 }  // namespace

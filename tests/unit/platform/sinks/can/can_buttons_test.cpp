@@ -19,19 +19,19 @@ namespace glint::can_buttons_test {
 namespace {
 
 constexpr std::uint32_t k_buttons = 0x190;
-constexpr Duration k_unix_minus_board = {1'000'000'000'000'000};
+constexpr Duration k_unix_minus_steady = {1'000'000'000'000'000};
 
 Time board_now() {
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);
-  return Time{std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec} - k_unix_minus_board;
+  return Time{std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec} - k_unix_minus_steady;
 }
 
 // One end is the reader, the other the pen.
-class Pair {
+class SocketPair {
  public:
-  explicit Pair(ButtonFrames::OnButton on_button, Duration timeout = k_button_timeout)
-      : Pair(made(), std::move(on_button), timeout) {}
+  explicit SocketPair(ButtonFrames::OnButton on_button, Duration timeout = k_button_timeout)
+      : SocketPair(made(), std::move(on_button), timeout) {}
 
   void send(std::uint8_t bits, std::uint32_t flags = 0) const {
     can_frame raw{};
@@ -61,9 +61,9 @@ class Pair {
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, ends), 0);
     return {Descriptor(ends[0]), Descriptor(ends[1])};
   }
-  Pair(Ends ends, ButtonFrames::OnButton on_button, Duration timeout)
+  SocketPair(Ends ends, ButtonFrames::OnButton on_button, Duration timeout)
       : pen_(std::move(ends.pen)),
-        buttons_(std::move(ends.here), k_buttons, k_unix_minus_board, std::move(on_button),
+        buttons_(std::move(ends.here), k_buttons, k_unix_minus_steady, std::move(on_button),
                  timeout) {}
 
   Descriptor pen_;
@@ -71,7 +71,7 @@ class Pair {
 };
 
 // An emulated kernel may not support time stamps.
-bool sockets_stamp_arrivals() {
+bool supports_arrival_times() {
   const Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const int on = 1;
   return ::setsockopt(socket.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) == 0;
@@ -79,9 +79,9 @@ bool sockets_stamp_arrivals() {
 
 // The time stamp of a queued frame is its arrival, not the time of its reading.
 TEST(CanButtons, StampAFrameWhenItArrivedNotWhenItWasRead) {
-  if (!sockets_stamp_arrivals()) GTEST_SKIP() << "no socket here says when its messages came";
+  if (!supports_arrival_times()) GTEST_SKIP() << "no socket here says when its messages came";
   std::vector<ButtonEvent> events;
-  Pair pair([&](const ButtonEvent& event) { events.push_back(event); });
+  SocketPair pair([&](const ButtonEvent& event) { events.push_back(event); });
   const Time before = board_now();
   pair.send(1);
   const Time after = board_now();
@@ -98,17 +98,18 @@ TEST(CanButtons, StampAFrameOnTheBoardsClockWhateverTheUnixClockDoes) {
   const Duration hour = milliseconds(3'600'000), age = milliseconds(7);
   for (const Duration step : {Duration{}, hour, Duration{} - hour}) {
     // The clock was set before the frame arrived: time stamp and clock agree.
-    EXPECT_EQ(board_arrival(unix_then + step - age, unix_then + step, board_now), board_now - age);
+    EXPECT_EQ(monotonic_arrival(unix_then + step - age, unix_then + step, board_now),
+              board_now - age);
   }
   for (const Duration step : {hour, Duration{} - hour}) {
-    EXPECT_EQ(board_arrival(unix_then - age, unix_then + step, board_now), board_now);
+    EXPECT_EQ(monotonic_arrival(unix_then - age, unix_then + step, board_now), board_now);
   }
 }
 
 TEST(CanButtons, ReleaseAHeldButtonWhoseSenderFellSilent) {
   std::vector<ButtonEvent> events;
   const Duration timeout = milliseconds(30);
-  Pair pair([&](const ButtonEvent& event) { events.push_back(event); }, timeout);
+  SocketPair pair([&](const ButtonEvent& event) { events.push_back(event); }, timeout);
   pair.send(1);
   for (int look = 0; events.size() < 2 && look < 5'000; ++look)
     pair.buttons().read(milliseconds(2));
@@ -121,8 +122,8 @@ TEST(CanButtons, ReleaseAHeldButtonWhoseSenderFellSilent) {
 // Each received frame triggers the next one: the queue stays non-empty until 600 frames were sent.
 TEST(CanButtons, TakeNoMoreAWakeUpThanDeclared) {
   int events = 0;
-  Pair* pen = nullptr;
-  Pair pair([&](const ButtonEvent& event) {
+  SocketPair* pen = nullptr;
+  SocketPair pair([&](const ButtonEvent& event) {
     if (++events < 600) pen->send(event.pressed ? 0 : 1);
   });
   pen = &pair;
@@ -134,7 +135,7 @@ TEST(CanButtons, TakeNoMoreAWakeUpThanDeclared) {
 
 TEST(CanButtons, RefuseHostileFramesAndGoOn) {
   std::vector<ButtonEvent> events;
-  Pair pair([&](const ButtonEvent& event) { events.push_back(event); });
+  SocketPair pair([&](const ButtonEvent& event) { events.push_back(event); });
   pair.send(1, CAN_RTR_FLAG);
   pair.send(1, CAN_ERR_FLAG);
   pair.send(1, CAN_EFF_FLAG);
@@ -145,14 +146,14 @@ TEST(CanButtons, RefuseHostileFramesAndGoOn) {
   while (pair.buttons().read(milliseconds(1)) > 0) {
   }
   EXPECT_EQ(pair.buttons().counts().refused, 6u);
-  EXPECT_EQ(pair.buttons().counts().heard, 1u);
+  EXPECT_EQ(pair.buttons().counts().received, 1u);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].button, Button::delete_last);
 }
 
 TEST(CanButtons, AreHeardByAThreadThatEndsWhenToldTo) {
   std::atomic<int> events{0};
-  Pair pair([&](const ButtonEvent&) { ++events; });
+  SocketPair pair([&](const ButtonEvent&) { ++events; });
   pair.buttons().start();
   pair.send(1);
   for (int waited = 0; events < 1 && waited < 5'000; ++waited) {
@@ -161,7 +162,7 @@ TEST(CanButtons, AreHeardByAThreadThatEndsWhenToldTo) {
   EXPECT_EQ(events, 1);
   pair.buttons().stop();
   pair.send(0);
-  EXPECT_EQ(pair.buttons().counts().heard, 1u);
+  EXPECT_EQ(pair.buttons().counts().received, 1u);
   EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 1);  // no other call read it
   EXPECT_EQ(events, 2);
 }

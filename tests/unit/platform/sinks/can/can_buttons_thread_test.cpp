@@ -70,7 +70,7 @@ TEST(CanButtonsThread, TakesClassicAndFdFramesButNoneWithoutAByte) {
   send(ends.pen, 2, CANFD_MTU);
   send(ends.pen, 0, 0);
   EXPECT_EQ(buttons.read(milliseconds(1000)), 3);
-  EXPECT_EQ(buttons.counts().heard, 2u);
+  EXPECT_EQ(buttons.counts().received, 2u);
   EXPECT_EQ(buttons.counts().refused, 1u);
   EXPECT_EQ(events, 3) << "one down, one up, one down";
 }
@@ -122,7 +122,7 @@ TEST(CanButtonsThread, StartsOnceAndAgainAfterAStop) {
 TEST(BoardArrival, IsAsLongBeforeNowAsTheStampUpToTenSeconds) {
   constexpr Time unix_now{1'700'000'000'000'000'000}, board_now{50'000'000'000};
   const auto of_age = [&](std::int64_t age_ns) {
-    return board_arrival(unix_now - Duration{age_ns}, unix_now, board_now);
+    return monotonic_arrival(unix_now - Duration{age_ns}, unix_now, board_now);
   };
   EXPECT_EQ(of_age(0), board_now);
   EXPECT_EQ(of_age(1), board_now - Duration{1});

@@ -8,7 +8,7 @@ namespace glint::can_sink_test {
 namespace {
 
 template <class Error>
-std::string complaint(const std::string& specification) {
+std::string error_message(const std::string& specification) {
   try {
     const auto sink = open_can_sink(specification);
   } catch (const Error& error) {
@@ -19,28 +19,28 @@ std::string complaint(const std::string& specification) {
 
 TEST(CanSink, RefusesWhatItDoesNotKnow) {
   for (const char* const bad : {"", "can0", "log", "log:", "socketcan", "socketcan:", "udp:x"}) {
-    const std::string text = complaint<InputError>(bad);
+    const std::string text = error_message<InputError>(bad);
     EXPECT_EQ(text, "CAN sink: found \"" + std::string(bad) +
                         "\"; expected \"socketcan:IF\" or \"log:FILE\"");
   }
 }
 
 TEST(CanSink, NamesTheInterfaceThatIsNotThere) {
-  const std::string text = complaint<MissingDevice>("socketcan:nocan7");
+  const std::string text = error_message<MissingDevice>("socketcan:nocan7");
   EXPECT_NE(text.find("socketcan:nocan7: no such network interface"), std::string::npos) << text;
   EXPECT_NE(text.find("expected"), std::string::npos) << text;
 }
 
 // The loopback interface exists on every kernel but is not a CAN interface.
 TEST(CanSink, RefusesAnInterfaceThatIsNotForCan) {
-  EXPECT_NE(complaint<MissingDevice>("socketcan:lo").find("socketcan:lo"), std::string::npos);
+  EXPECT_NE(error_message<MissingDevice>("socketcan:lo").find("socketcan:lo"), std::string::npos);
 }
 
 TEST(CanSink, RefusesAnInterfaceNameThatLinuxCannotHave) {
   const std::string longest(15, 'x');
-  EXPECT_EQ(complaint<MissingDevice>("socketcan:" + longest),
+  EXPECT_EQ(error_message<MissingDevice>("socketcan:" + longest),
             "socketcan:" + longest + ": no such network interface; expected one of `ip link`");
-  EXPECT_EQ(complaint<InputError>("socketcan:x" + longest),
+  EXPECT_EQ(error_message<InputError>("socketcan:x" + longest),
             "socketcan:x" + longest + ": a name of 16 characters; expected at most 15");
 }
 
@@ -55,7 +55,7 @@ TEST(CanSink, HasSentAllWhereNothingWasDroppedAndNothingFailed) {
 }
 
 TEST(CanSink, NamesTheLogThatCannotBeMade) {
-  EXPECT_EQ(complaint<InputError>("log:/no/such/folder/can.log"),
+  EXPECT_EQ(error_message<InputError>("log:/no/such/folder/can.log"),
             "/no/such/folder/can.log: cannot be written: No such file or directory; expected a "
             "place for a log");
 }

@@ -25,7 +25,7 @@ CanSinkOptions options_in(const std::filesystem::path& folder) {
   CanSinkOptions options;
   options.directory = folder;
   options.unix_offset_ns = 1'700'000'000'000'000'000;
-  options.when_full = WhenFull::wait;
+  options.when_full = OverflowPolicy::wait;
   return options;
 }
 

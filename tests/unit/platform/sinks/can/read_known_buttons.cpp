@@ -1,4 +1,4 @@
-// read_known_buttons LOG IDENTIFIER: prints one line for each change of a button in a candump log:
+// print_button_events LOG IDENTIFIER: prints one line for each change of a button in a candump log:
 // the button (0 draw, 1 delete_last, 2 undo, 3 finish) and whether it is held.
 #include <cstdio>
 #include <cstdlib>
@@ -18,7 +18,7 @@ int main(int count, char** arguments) {
   std::ifstream log(arguments[1]);
   for (std::string line; std::getline(log, line);) {
     const auto record = parse_candump(line);
-    frames.hear(record ? std::optional(record->frame) : std::nullopt, {});
+    frames.receive(record ? std::optional(record->frame) : std::nullopt, {});
   }
   return frames.counts().refused == 0 ? 0 : 1;
 }

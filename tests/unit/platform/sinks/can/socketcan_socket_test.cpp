@@ -41,7 +41,7 @@ struct CanKernel {
   socklen_t filter_bytes = 77;
   int fd_frames = 0;
   sockaddr_can address{};
-  int far = -1;  // the other end of the socket
+  int peer_fd = -1;  // the other end of the socket
 };
 CanKernel* g_kernel = nullptr;
 
@@ -60,9 +60,9 @@ extern "C" int socket(int domain, int type, int protocol) noexcept {
   g_kernel->protocol = protocol;
   int ends[2] = {-1, -1};
   if (result_of(g_kernel->socket_error) != 0) return -1;
-  if (g_kernel->far >= 0) ::close(g_kernel->far);
+  if (g_kernel->peer_fd >= 0) ::close(g_kernel->peer_fd);
   if (::socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0) return -1;
-  g_kernel->far = ends[1];
+  g_kernel->peer_fd = ends[1];
   return ends[0];
 }
 
@@ -114,7 +114,7 @@ class SocketCanSocket : public testing::Test {
   SocketCanSocket() { g_kernel = &kernel_; }
   ~SocketCanSocket() override {
     g_kernel = nullptr;
-    if (kernel_.far >= 0) ::close(kernel_.far);
+    if (kernel_.peer_fd >= 0) ::close(kernel_.peer_fd);
   }
   // The error message, or "" for an open socket.
   static std::string refusal(CanFormat format) {
@@ -191,7 +191,7 @@ TEST_F(SocketCanSocket, CarriesTheFramesOfASink) {
   frame.identifier = 0x1A0;
   EXPECT_TRUE(sink->send(frame, {}));
   can_frame raw{};
-  EXPECT_EQ(::recv(kernel_.far, &raw, sizeof raw, 0), static_cast<ssize_t>(sizeof raw));
+  EXPECT_EQ(::recv(kernel_.peer_fd, &raw, sizeof raw, 0), static_cast<ssize_t>(sizeof raw));
   EXPECT_EQ(raw.can_id, 0x1A0u);
 }
 
@@ -205,11 +205,11 @@ TEST_F(SocketCanSocket, BringsTheButtonsToAThread) {
   raw.can_id = 0x190;
   raw.can_dlc = 1;
   raw.data[0] = 1;
-  ASSERT_EQ(::send(kernel_.far, &raw, sizeof raw, 0), static_cast<ssize_t>(sizeof raw));
+  ASSERT_EQ(::send(kernel_.peer_fd, &raw, sizeof raw, 0), static_cast<ssize_t>(sizeof raw));
   for (int waited = 0; events < 1 && waited < 5'000; ++waited)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(events, 1);
-  EXPECT_EQ(buttons->counts().heard, 1u);
+  EXPECT_EQ(buttons->counts().received, 1u);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// write_known_samples FOLDER: writes a CAN log of known poses, classic and FD, and the poses as one
-// JSON object a line. The reader of the log must not share code with its writer.
+// write_reference_samples FOLDER: writes a CAN log of known poses, classic and FD, and the poses as
+// one JSON object a line. The reader of the log must not share code with its writer.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -64,7 +64,7 @@ int main(int count, char** arguments) {
   CanSinkOptions options;
   options.directory = arguments[1];
   options.unix_offset_ns = k_unix_offset_ns;
-  options.when_full = WhenFull::wait;
+  options.when_full = OverflowPolicy::wait;
   const auto sink = open_can_sink("log:can.log", options);
   std::FILE* const truth = std::fopen((options.directory / "samples.jsonl").c_str(), "w");
   if (truth == nullptr) return 2;

@@ -19,23 +19,23 @@ TEST_F(ButtonStatus, SaysWhatIsHeldFromTheNextTickOn) {
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
-  Sinks sinks(cell, options, k_board_start.nanoseconds);
+  Sinks sinks(cell, options, k_clock_start.nanoseconds);
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(status_type(), topics_of("glint", "pen").status,
                                           Reliability::reliable, Durability::volatile_data, 100);
   const dds_entity_t button = peer.writer(bool_type(), "rt/glint/button_undo",
                                           Reliability::reliable, Durability::volatile_data, 64);
-  ASSERT_TRUE(peer.meets(*sinks.dds()));
-  ASSERT_TRUE(comes_true([&] { return has_reader(button); }));
+  ASSERT_TRUE(peer.wait_for_discovery(*sinks.dds()));
+  ASSERT_TRUE(wait_until([&] { return has_reader(button); }));
 
-  TickSinks listening;
-  listening.dds = sinks.dds();
-  UnseenPen pen(cell, sinks, listening);
+  TickSinks tick_sinks;
+  tick_sinks.dds = sinks.dds();
+  TickGroupWithoutFrames pen(cell, sinks, tick_sinks);
   pen.tick();
   for (const bool down : {true, false}) {
     const BoolMessage message{down};
     dds_write(button, &message);
-    ASSERT_TRUE(comes_true([&] { return sinks.held_buttons().sample(); }));
+    ASSERT_TRUE(wait_until([&] { return sinks.held_buttons().sample(); }));
     pen.tick();
     pen.tick();
   }

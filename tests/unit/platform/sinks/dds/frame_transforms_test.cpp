@@ -17,10 +17,10 @@ namespace glint {
 namespace {
 
 // Replaces the tracker: the reference body has a pose from the second frame on.
-class BodySeenLater final : public FrameMethod {
+class LateReferenceBody final : public FrameMethod {
  public:
   const Estimates& process(const ArrivedFrame& arrived) override {
-    estimates_.reference_known = arrived.frame.sequence > 1;
+    estimates_.has_reference = arrived.frame.sequence > 1;
     estimates_.T_world_reference.translation = Vector3(0, 0, 2);
     return estimates_;
   }
@@ -34,18 +34,18 @@ using FrameTransformsOfARun = DdsTest;
 TEST_F(FrameTransformsOfARun, TellWhereTheRobotOnTheBodyIsWhileTheBodyIsKnown) {
   const TemporaryFolder folder;
   Cell cell = default_cell();
-  cell.robot_given = cell.robot_in_reference = true;
+  cell.robot_valid = cell.robot_in_reference = true;
   cell.T_world_robot = {Quaternion::Identity(), Vector3(0.5, 0, 0)};
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
-  Sinks sinks(cell, options, k_board_start.nanoseconds);
+  Sinks sinks(cell, options, k_clock_start.nanoseconds);
   Peer peer(test_settings());
   const dds_entity_t statics = peer.reader(tf_type(), k_tf_static_topic, Reliability::reliable,
                                            Durability::transient_local, 10);
   const dds_entity_t moving =
       peer.reader(tf_type(), k_tf_topic, Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(*sinks.dds()));
+  ASSERT_TRUE(peer.wait_for_discovery(*sinks.dds()));
   EXPECT_EQ(take<TfMessage>(statics, 1,
                             [](const TfMessage& message) {
                               EXPECT_EQ(message.transforms._length, 0u)
@@ -56,7 +56,7 @@ TEST_F(FrameTransformsOfARun, TellWhereTheRobotOnTheBodyIsWhileTheBodyIsKnown) {
   graph::TripleBuffer<ToolSet> tools;
   GroupRunner<Tracker> runner(RunnerSettings<Tracker>{});
   FrameGroup group(
-      cell, tools, [] { return Time{}; }, runner, nullptr, std::make_unique<BodySeenLater>());
+      cell, tools, [] { return Time{}; }, runner, nullptr, std::make_unique<LateReferenceBody>());
   group.publish_transforms_to(sinks.dds());
   for (std::uint32_t sequence = 1; sequence <= 2; ++sequence) {
     ArrivedFrame arrived;

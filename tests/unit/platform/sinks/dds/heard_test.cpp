@@ -16,21 +16,21 @@ constexpr Duration k_start{1'700'000'000'000'000'000};
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 bool heard(JointText text) {
-  HeardJoints to;
-  return hear(text.message(), k_start, Time{5}, to);
+  ReceivedJoints to;
+  return read_message(text.message(), k_start, Time{5}, to);
 }
 
 TEST(Heard, TakesJointsByNameWithTheirTime) {
   JointText text({"shoulder", "elbow"}, {0.5, -1.25});
-  HeardJoints joints;
-  ASSERT_TRUE(hear(text.message(), k_start, Time{5}, joints));
+  ReceivedJoints joints;
+  ASSERT_TRUE(read_message(text.message(), k_start, Time{5}, joints));
   EXPECT_EQ(joints.count, 2);
   EXPECT_STREQ(joints.names[1].data(), "elbow");
   EXPECT_EQ(joints.positions[1], -1.25);
   EXPECT_EQ(joints.time, Time{5});  // the message has no time stamp
   JointStateMessage stamped = text.message();
   stamped.header.stamp = {1'700'000'001, 250};
-  ASSERT_TRUE(hear(stamped, k_start, Time{5}, joints));
+  ASSERT_TRUE(read_message(stamped, k_start, Time{5}, joints));
   EXPECT_EQ(joints.time, Time{1'000'000'250});
 }
 
@@ -49,35 +49,35 @@ TEST(Heard, RefusesJointsThatAreNotWholeNotFiniteOrTooMany) {
 TEST(Heard, TakesAGuessWithARotationOfLengthOne) {
   std::string frame = "hmd_world";
   PoseCovarianceMessage message = guess_message(frame);
-  HeardGuess guess;
-  ASSERT_TRUE(hear(message, k_start, Time{5}, guess));
+  ReceivedInitialPose guess;
+  ASSERT_TRUE(read_message(message, k_start, Time{5}, guess));
   EXPECT_STREQ(guess.frame.data(), "hmd_world");
   EXPECT_EQ(guess.pose.translation, Vector3(1, 2, 3));
   EXPECT_NEAR(guess.pose.rotation.z(), 1, 1e-12);
   EXPECT_NEAR(guess.pose.rotation.norm(), 1, 1e-15);
   EXPECT_EQ(guess.covariance(1, 2), 8);
   message.pose.pose.orientation.z = 0;
-  EXPECT_FALSE(hear(message, k_start, Time{5}, guess));
+  EXPECT_FALSE(read_message(message, k_start, Time{5}, guess));
   message = guess_message(frame);
   message.pose.pose.position.y = std::numeric_limits<double>::infinity();
-  EXPECT_FALSE(hear(message, k_start, Time{5}, guess));
+  EXPECT_FALSE(read_message(message, k_start, Time{5}, guess));
   message = guess_message(frame);
   message.pose.covariance[35] = k_nan;
-  EXPECT_FALSE(hear(message, k_start, Time{5}, guess));
+  EXPECT_FALSE(read_message(message, k_start, Time{5}, guess));
   std::string long_name(64, 'f');
-  EXPECT_FALSE(hear(guess_message(long_name), k_start, Time{5}, guess));
+  EXPECT_FALSE(read_message(guess_message(long_name), k_start, Time{5}, guess));
 }
 
 TEST(Heard, TakesADescriptionUpToItsLargestSize) {
-  std::string text(k_heard_description_max, 'u');
-  HeardDescription heard_text;
-  ASSERT_TRUE(hear(TextMessage{text.data()}, heard_text));
+  std::string text(k_received_description_max, 'u');
+  ReceivedDescription heard_text;
+  ASSERT_TRUE(read_message(TextMessage{text.data()}, heard_text));
   EXPECT_EQ(heard_text.urdf, text);
   text += 'u';
-  EXPECT_FALSE(hear(TextMessage{text.data()}, heard_text));
+  EXPECT_FALSE(read_message(TextMessage{text.data()}, heard_text));
   std::string empty;
-  EXPECT_FALSE(hear(TextMessage{empty.data()}, heard_text));
-  EXPECT_FALSE(hear(TextMessage{nullptr}, heard_text));
+  EXPECT_FALSE(read_message(TextMessage{empty.data()}, heard_text));
+  EXPECT_FALSE(read_message(TextMessage{nullptr}, heard_text));
 }
 
 }  // namespace

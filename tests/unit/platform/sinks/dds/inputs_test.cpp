@@ -25,7 +25,7 @@ namespace {
 using Inputs = DdsTest;
 
 bool found(dds_entity_t writer) {
-  return comes_true([&] { return has_reader(writer); });
+  return wait_until([&] { return has_reader(writer); });
 }
 
 // Both ends, in separate Cyclone domains.
@@ -42,7 +42,7 @@ struct Ends {
   // Alternates writing and reading until `done` returns true.
   template <class Done>
   bool read_until(Done done) {
-    return comes_true([&] {
+    return wait_until([&] {
       inputs.read(milliseconds(2));
       return done();
     });
@@ -63,7 +63,7 @@ TEST_F(Inputs, HandOverTheNewestJointStateOfABestEffortDriver) {
     return ends.inputs.counts().joints >= 3;
   }));
   ASSERT_TRUE(ends.inputs.joints().sample());
-  const HeardJoints& joints = ends.inputs.joints().value();
+  const ReceivedJoints& joints = ends.inputs.joints().value();
   EXPECT_EQ(joints.count, 2);
   EXPECT_STREQ(joints.names[0].data(), "shoulder");
   EXPECT_GT(joints.positions[0], 0.25);
@@ -80,7 +80,7 @@ TEST_F(Inputs, HearADescriptionThatWasPublishedBefore) {
   const TextMessage message{urdf.data()};
   ASSERT_EQ(dds_write(writer, &message), DDS_RETCODE_OK);
   DdsInputs inputs(std::make_shared<Participant>(test_settings()), test_settings(), {});
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(wait_until([&] {
     inputs.read(milliseconds(2));
     return inputs.description().sample();
   }));
@@ -96,8 +96,8 @@ TEST_F(Inputs, TakeRvizsGuess) {
   std::string frame = "hmd_world";
   const PoseCovarianceMessage message = guess_message(frame);
   dds_write(writer, &message);
-  EXPECT_TRUE(ends.read_until([&] { return ends.inputs.guess().sample(); }));
-  EXPECT_EQ(ends.inputs.guess().value().pose.translation, Vector3(1, 2, 3));
+  EXPECT_TRUE(ends.read_until([&] { return ends.inputs.initial_pose().sample(); }));
+  EXPECT_EQ(ends.inputs.initial_pose().value().pose.translation, Vector3(1, 2, 3));
 }
 
 TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
@@ -107,7 +107,7 @@ TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
   const dds_entity_t undo = ends.peer.writer(bool_type(), "rt/glint/button_undo",
                                              Reliability::reliable, Durability::volatile_data, 64);
   ASSERT_TRUE(found(draw) && found(undo));
-  const Time before = Time{dds_time()} - k_board_start;
+  const Time before = Time{dds_time()} - k_clock_start;
   for (const bool down : {false, true, true, true, false, true}) {
     const BoolMessage message{down};
     dds_write(draw, &message);
@@ -120,7 +120,7 @@ TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
   int undone = 0;
   for (const ButtonEvent& event : ends.events) {
     EXPECT_GE(event.time, before);
-    EXPECT_LE(event.time, Time{dds_time()} - k_board_start);
+    EXPECT_LE(event.time, Time{dds_time()} - k_clock_start);
     if (event.button == Button::draw) states.push_back(event.pressed);
     undone += event.button == Button::undo ? 1 : 0;
   }
@@ -129,7 +129,7 @@ TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
 }
 
 // Publishes a pressed button from this participant.
-void hold(Peer& peer, const char* topic) {
+void press_button(Peer& peer, const char* topic) {
   const dds_entity_t writer =
       peer.writer(bool_type(), topic, Reliability::reliable, Durability::volatile_data, 64);
   ASSERT_TRUE(found(writer));
@@ -140,8 +140,8 @@ void hold(Peer& peer, const char* topic) {
 TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeaves) {
   Ends ends;
   auto leaving = std::make_unique<Peer>(test_settings(), 201);
-  hold(*leaving, "rt/glint/button");
-  hold(ends.peer, "rt/glint/button_undo");
+  press_button(*leaving, "rt/glint/button");
+  press_button(ends.peer, "rt/glint/button_undo");
   ASSERT_TRUE(ends.read_until([&] { return ends.events.size() == 2; }));
   leaving.reset();
   ASSERT_TRUE(ends.read_until([&] { return ends.events.size() == 3; }));
@@ -156,7 +156,7 @@ TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeavesBesideAnotherOnItsTopic) {
   ASSERT_TRUE(found(ends.peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
                                      Durability::volatile_data, 64)));
   auto leaving = std::make_unique<Peer>(test_settings(), 201);
-  hold(*leaving, "rt/glint/button");
+  press_button(*leaving, "rt/glint/button");
   ASSERT_TRUE(ends.read_until([&] { return ends.events.size() == 1; }));
   leaving.reset();
   EXPECT_TRUE(ends.read_until([&] { return ends.events.size() == 2; }));
@@ -168,7 +168,7 @@ TEST_F(Inputs, ReleaseAButtonWhoseParticipantWasKilled) {
   const pid_t child = ::fork();
   if (child == 0) {
     Peer peer(test_settings(), 201, "<LeaseDuration>500ms</LeaseDuration>");
-    hold(peer, "rt/glint/button");
+    press_button(peer, "rt/glint/button");
     ::pause();
   }
   ASSERT_GT(child, 0);
@@ -176,7 +176,7 @@ TEST_F(Inputs, ReleaseAButtonWhoseParticipantWasKilled) {
   DdsInputs inputs(std::make_shared<Participant>(test_settings()), test_settings(),
                    [&](const ButtonEvent& event) { events.push_back(event); });
   const auto read_until = [&](std::size_t count) {
-    return comes_true([&] {
+    return wait_until([&] {
       inputs.read(milliseconds(2));
       return events.size() == count;
     });
@@ -195,8 +195,8 @@ TEST_F(Inputs, ReleaseAButtonThatNobodyRepeatsWithinTheTimeout) {
   DdsInputs inputs(std::make_shared<Participant>(settings), settings,
                    [&](const ButtonEvent& event) { events.push_back(event); });
   Peer peer(settings);
-  hold(peer, "rt/glint/button");
-  ASSERT_TRUE(comes_true([&] {
+  press_button(peer, "rt/glint/button");
+  ASSERT_TRUE(wait_until([&] {
     inputs.read(milliseconds(2));
     return events.size() == 2;
   }));
@@ -208,7 +208,7 @@ TEST_F(Inputs, SayWhichToolsAreNamedToBeThereOrNot) {
   std::vector<std::pair<int, bool>> named;
   DdsSettings settings = test_settings();
   settings.tool_names = {"pen", "spare pen"};
-  settings.hears_tool_changes = true;
+  settings.accepts_tool_changes = true;
   DdsInputs inputs(std::make_shared<Participant>(settings), settings, {},
                    [&](int tool, bool there) { named.emplace_back(tool, there); });
   Peer peer(settings);
@@ -222,7 +222,7 @@ TEST_F(Inputs, SayWhichToolsAreNamedToBeThereOrNot) {
     ASSERT_EQ(dds_write(writer, &message), DDS_RETCODE_OK);
   };
   const auto heard = [&](std::uint64_t tools, std::uint64_t refused) {
-    return comes_true([&] {
+    return wait_until([&] {
       inputs.read(milliseconds(2));
       return inputs.counts().tools == tools && inputs.counts().refused == refused;
     });
@@ -304,7 +304,7 @@ TEST_F(Inputs, ReadInAThreadBesideASinkInOneDomain) {
   ASSERT_TRUE(found(draw));
   const BoolMessage pressed{true};
   dds_write(draw, &pressed);
-  EXPECT_TRUE(comes_true([&] { return inputs.counts().buttons == 1; }));
+  EXPECT_TRUE(wait_until([&] { return inputs.counts().buttons == 1; }));
   inputs.stop();
   const std::lock_guard lock(mutex);
   ASSERT_EQ(events.size(), 1u);

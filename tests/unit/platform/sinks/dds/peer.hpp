@@ -19,12 +19,12 @@
 namespace glint {
 
 // Timeout of everything that is received over the network.
-inline constexpr int k_patience_ms = 10'000;
+inline constexpr int k_timeout_ms = 10'000;
 
 // Waits until `done` returns true. Returns false at the timeout.
 template <class Done>
-[[nodiscard]] bool comes_true(Done done) {
-  for (int waited = 0; waited < k_patience_ms; waited += 2) {
+[[nodiscard]] bool wait_until(Done done) {
+  for (int waited = 0; waited < k_timeout_ms; waited += 2) {
     if (done()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -66,7 +66,7 @@ class Peer {
 
   dds_entity_t reader(const TopicType& type, const std::string& topic, Reliability reliability,
                       Durability durability, int depth) {
-    dds_qos_t* const qos = quality(reliability, durability, depth);
+    dds_qos_t* const qos = qos_of(reliability, durability, depth);
     const dds_entity_t entity =
         dds_create_topic(participant_, type.descriptor, topic.c_str(), nullptr, nullptr);
     const dds_entity_t reader = dds_create_reader(participant_, entity, qos, nullptr);
@@ -78,7 +78,7 @@ class Peer {
 
   dds_entity_t writer(const TopicType& type, const std::string& topic, Reliability reliability,
                       Durability durability, int depth) {
-    dds_qos_t* const qos = quality(reliability, durability, depth);
+    dds_qos_t* const qos = qos_of(reliability, durability, depth);
     const dds_entity_t entity =
         dds_create_topic(participant_, type.descriptor, topic.c_str(), nullptr, nullptr);
     const dds_entity_t writer = dds_create_writer(participant_, entity, qos, nullptr);
@@ -89,22 +89,22 @@ class Peer {
   // Waits until both sides have discovered each other's endpoints. A sink discovers readers in
   // order of their creation, so a reader of the last tool's status, created last, completes the
   // discovery.
-  [[nodiscard]] bool meets(const DdsSink& sink) {
+  [[nodiscard]] bool wait_for_discovery(const DdsSink& sink) {
     const int known = status_readers_;
     for (const std::string& tool : settings_.tool_names) {
       reader(status_type(), topics_of(settings_.topic_prefix, tool).status, Reliability::reliable,
              Durability::volatile_data, 1);
     }
     const int tools = static_cast<int>(settings_.tool_names.size());
-    if (!sink.wait_for_readers(known / tools + 1, milliseconds(k_patience_ms))) return false;
-    return comes_true([&] { return std::all_of(readers_.begin(), readers_.end(), has_writer); });
+    if (!sink.wait_for_readers(known / tools + 1, milliseconds(k_timeout_ms))) return false;
+    return wait_until([&] { return std::all_of(readers_.begin(), readers_.end(), has_writer); });
   }
 
   [[nodiscard]] dds_entity_t participant() const { return participant_; }
 
  private:
   // XCDR1, as in rmw_cyclonedds. The caller deletes the result.
-  static dds_qos_t* quality(Reliability reliability, Durability durability, int depth) {
+  static dds_qos_t* qos_of(Reliability reliability, Durability durability, int depth) {
     dds_qos_t* qos = dds_create_qos();
     dds_qset_reliability(qos,
                          reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
@@ -130,7 +130,7 @@ class Peer {
 template <class Message, class Use>
 [[nodiscard]] std::size_t take(dds_entity_t reader, std::size_t count, Use use) {
   std::size_t taken = 0;
-  (void)comes_true([&] {
+  (void)wait_until([&] {
     void* sample[1] = {nullptr};
     dds_sample_info_t info;
     while (dds_take(reader, sample, &info, 1, 1) == 1) {

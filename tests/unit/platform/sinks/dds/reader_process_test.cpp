@@ -50,7 +50,7 @@ TEST_F(ReaderProcesses, ReceiveAllThatTheSinkKeeps) {
   const ReaderResult result = reader.finish(k_limit);
   EXPECT_EQ(result.received, 90u);
   EXPECT_EQ(result.missed, 0u);
-  EXPECT_EQ(result.poses_announced, 81u);
+  EXPECT_EQ(result.poses_expected, 81u);
   EXPECT_LE(result.poses_received, 81u);
   EXPECT_EQ(result.first_tick, 7u);
   EXPECT_EQ(result.last_tick, 96u);

@@ -26,7 +26,7 @@ TEST_F(ReaderResults, ComeBackAsTheyWereSaved) {
   result.received = 1;
   result.missed = 2;
   result.poses_received = 3;
-  result.poses_announced = 4;
+  result.poses_expected = 4;
   result.first_tick = 5;
   result.last_tick = 6;
   result.streams = 7;
@@ -40,7 +40,7 @@ TEST_F(ReaderResults, ComeBackAsTheyWereSaved) {
   EXPECT_EQ(back.received, 1u);
   EXPECT_EQ(back.missed, 2u);
   EXPECT_EQ(back.poses_received, 3u);
-  EXPECT_EQ(back.poses_announced, 4u);
+  EXPECT_EQ(back.poses_expected, 4u);
   EXPECT_EQ(back.first_tick, 5u);
   EXPECT_EQ(back.last_tick, 6u);
   EXPECT_EQ(back.streams, 7u);

@@ -28,21 +28,21 @@ TEST_F(RecordedButton, StandsInARunsRecordingAtItsTime) {
   SinkOutcome outcome;
   Time before, after;
   {
-    Sinks sinks(cell, options, k_board_start.nanoseconds);
+    Sinks sinks(cell, options, k_clock_start.nanoseconds);
     Peer peer(test_settings());
     const dds_entity_t button = peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
                                             Durability::volatile_data, 64);
-    ASSERT_TRUE(comes_true([&] { return has_reader(button); }));
-    before = Time{dds_time()} - k_board_start;
+    ASSERT_TRUE(wait_until([&] { return has_reader(button); }));
+    before = Time{dds_time()} - k_clock_start;
     for (const bool down : {true, false}) {
       const BoolMessage message{down};
       dds_write(button, &message);
     }
-    EXPECT_TRUE(comes_true([&] { return sinks.inputs()->counts().buttons == 2; }));
-    after = Time{dds_time()} - k_board_start;
+    EXPECT_TRUE(wait_until([&] { return sinks.inputs()->counts().buttons == 2; }));
+    after = Time{dds_time()} - k_clock_start;
     sinks.close(outcome);
   }
-  EXPECT_EQ(outcome.heard.buttons, 2u);
+  EXPECT_EQ(outcome.dds_received.buttons, 2u);
   EXPECT_TRUE(outcome.recording.complete());
   RecordingReader reader(outcome.recording_file);
   std::vector<ButtonEvent> events;
@@ -63,25 +63,25 @@ TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRosterWhereTheCellAllowsIt) 
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
-  Sinks sinks(cell, options, k_board_start.nanoseconds);
+  Sinks sinks(cell, options, k_clock_start.nanoseconds);
   ToolRoster roster(cell, &sinks.tool_requests());
   Peer peer(test_settings());
   const dds_entity_t remove = peer.writer(text_type(), "rt/glint/tool_remove",
                                           Reliability::reliable, Durability::volatile_data, 64);
-  ASSERT_TRUE(comes_true([&] { return has_reader(remove); }));
+  ASSERT_TRUE(wait_until([&] { return has_reader(remove); }));
   std::string name = cell.tools.items[0].name.data();
   const TextMessage message{name.data()};
   dds_write(remove, &message);
-  ASSERT_TRUE(comes_true([&] { return sinks.inputs()->counts().tools == 1; }));
-  roster.reach(Time{1});
+  ASSERT_TRUE(wait_until([&] { return sinks.inputs()->counts().tools == 1; }));
+  roster.apply_changes(Time{1});
   ASSERT_TRUE(roster.published().sample());
   EXPECT_FALSE(roster.published().value().items[0].present());
   SinkOutcome outcome;
   sinks.close(outcome);
-  EXPECT_EQ(outcome.heard.tools, 1u);
-  ASSERT_EQ(outcome.tool_orders.size(), 1u);
-  EXPECT_EQ(outcome.tool_orders[0].removed, 1u);
-  EXPECT_EQ(outcome.tool_orders[0].added, 0u);
+  EXPECT_EQ(outcome.dds_received.tools, 1u);
+  ASSERT_EQ(outcome.tool_change_counts.size(), 1u);
+  EXPECT_EQ(outcome.tool_change_counts[0].removed, 1u);
+  EXPECT_EQ(outcome.tool_change_counts[0].added, 0u);
 }
 
 // The sink creates the button readers after the tool readers. A peer that has discovered the last
@@ -91,7 +91,7 @@ TEST_F(RecordedButton, NobodyReadsToolNamesUnlessTheCellAllowsIt) {
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
-  Sinks sinks(default_cell(), options, k_board_start.nanoseconds);
+  Sinks sinks(default_cell(), options, k_clock_start.nanoseconds);
   Peer peer(test_settings());
   const auto writer = [&](const TopicType& type, const char* topic) {
     return peer.writer(type, topic, Reliability::reliable, Durability::volatile_data, 64);
@@ -99,7 +99,7 @@ TEST_F(RecordedButton, NobodyReadsToolNamesUnlessTheCellAllowsIt) {
   const dds_entity_t add = writer(text_type(), "rt/glint/tool_add");
   const dds_entity_t remove = writer(text_type(), "rt/glint/tool_remove");
   const dds_entity_t finish = writer(bool_type(), "rt/glint/button_finish");
-  ASSERT_TRUE(comes_true([&] { return has_reader(finish); }));
+  ASSERT_TRUE(wait_until([&] { return has_reader(finish); }));
   EXPECT_FALSE(has_reader(add));
   EXPECT_FALSE(has_reader(remove));
   SinkOutcome outcome;

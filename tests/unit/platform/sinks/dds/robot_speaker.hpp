@@ -11,9 +11,9 @@
 
 namespace glint {
 
-class RobotSpeaker {
+class SimulatedRobotDriver {
  public:
-  RobotSpeaker(std::vector<std::string> joints, std::vector<double> positions)
+  SimulatedRobotDriver(std::vector<std::string> joints, std::vector<double> positions)
       : peer_(test_settings()), names_(std::move(joints)), positions_(std::move(positions)) {
     description_ = peer_.writer(text_type(), k_robot_description_topic, Reliability::reliable,
                                 Durability::transient_local, 1);
@@ -23,18 +23,18 @@ class RobotSpeaker {
                           Durability::volatile_data, 10);
   }
   // Whether a reader of the joint states and one of the guess are matched.
-  [[nodiscard]] bool is_known() const { return has_reader(joint_states_) && has_reader(guess_); }
-  void say_description(std::string urdf) {
+  [[nodiscard]] bool is_matched() const { return has_reader(joint_states_) && has_reader(guess_); }
+  void publish_description(std::string urdf) {
     const TextMessage message{urdf.data()};
     dds_write(description_, &message);
   }
   void move_to(std::vector<double> positions) { positions_ = std::move(positions); }
-  void say_joints() {
+  void publish_joints() {
     JointText joints(names_, positions_);
     const JointStateMessage message = joints.message();
     dds_write(joint_states_, &message);
   }
-  void say_guess(const Pose& pose, std::string frame = "hmd_tof_optical") {
+  void publish_guess(const Pose& pose, std::string frame = "hmd_tof_optical") {
     PoseCovarianceMessage message = guess_message(frame);
     const Vector3& t = pose.translation;
     const Quaternion& q = pose.rotation;

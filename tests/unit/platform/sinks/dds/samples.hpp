@@ -7,13 +7,13 @@
 namespace glint {
 
 // Unix time at which the companion computer's clock started.
-inline constexpr Duration k_board_start{1'700'000'000'000'000'000};
+inline constexpr Duration k_clock_start{1'700'000'000'000'000'000};
 inline constexpr Duration k_period = milliseconds(4);
 
 inline DdsSettings test_settings() {
   DdsSettings settings;
   settings.tick_period = k_period;
-  settings.unix_minus_board = k_board_start;
+  settings.unix_minus_session = k_clock_start;
   settings.button_timeout = milliseconds(3'600'000);  // effectively no timeout
   return settings;
 }

@@ -17,7 +17,7 @@ using Sinks = DdsTest;
 
 const ToolTopics pen = topics_of("glint", "pen");
 
-std::int64_t unix_ns(const StampMessage& stamp) { return time_of(stamp).nanoseconds; }
+std::int64_t unix_ns(const TimeMessage& stamp) { return time_of(stamp).nanoseconds; }
 
 void expect_pose(const PoseMessage& message, const Pose& pose) {
   EXPECT_EQ(message.position.x, pose.translation.x());
@@ -36,7 +36,7 @@ TEST_F(Sinks, PublishThePoseStampedForTheTimeItIsValidFor) {
   Peer peer(settings);
   const dds_entity_t reader = peer.reader(pose_stamped_type(), pen.pose, Reliability::reliable,
                                           Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   const PoseSample sample = sample_at(3);
   EXPECT_TRUE(sink.offer(sample));
@@ -44,7 +44,7 @@ TEST_F(Sinks, PublishThePoseStampedForTheTimeItIsValidFor) {
                                      [&](const PoseStampedMessage& message) {
                                        EXPECT_STREQ(message.header.frame_id, "robot_base");
                                        EXPECT_EQ(unix_ns(message.header.stamp),
-                                                 k_board_start.nanoseconds + 19'000'000);
+                                                 k_clock_start.nanoseconds + 19'000'000);
                                        expect_pose(message.pose, sample.pose);
                                      }),
             1u);
@@ -55,7 +55,7 @@ TEST_F(Sinks, PublishTheCovarianceRowByRow) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(pose_covariance_type(), pen.pose_covariance,
                                           Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   const PoseSample sample = sample_at(3);
   sink.offer(sample);
@@ -74,7 +74,7 @@ TEST_F(Sinks, PublishTheSystematicPartByItself) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(pose_covariance_type(), pen.pose_systematic,
                                           Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   PoseSample sample = sample_at(3);
   sample.systematic(0, 1) = 7;
@@ -93,7 +93,7 @@ TEST_F(Sinks, PublishTheTipAsATransformOfTheFrameThePoseIsIn) {
   Peer peer(test_settings());
   const dds_entity_t reader =
       peer.reader(tf_type(), k_tf_topic, Reliability::reliable, Durability::volatile_data, 100);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   PoseSample sample = sample_at(3);
   sample.frame = ReferenceFrame::world;
@@ -116,7 +116,7 @@ TEST_F(Sinks, PublishWhereTheHeadsetIsWhileItKnows) {
   Peer peer(test_settings());
   const dds_entity_t reader =
       peer.reader(tf_type(), k_tf_topic, Reliability::reliable, Durability::volatile_data, 100);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   HeadPose head{Time{} + milliseconds(30), false, {Quaternion::Identity(), Vector3(9, 9, 9)}};
   EXPECT_TRUE(sink.offer_frame({head, false, {}}));
@@ -130,7 +130,7 @@ TEST_F(Sinks, PublishWhereTheHeadsetIsWhileItKnows) {
                               EXPECT_STREQ(seen.header.frame_id, "hmd_world");
                               EXPECT_STREQ(seen.child_frame_id, "hmd_tof_optical");
                               EXPECT_EQ(unix_ns(seen.header.stamp),
-                                        k_board_start.nanoseconds + 30'000'000);
+                                        k_clock_start.nanoseconds + 30'000'000);
                               EXPECT_EQ(seen.transform.translation.z, 3);
                               EXPECT_EQ(seen.transform.rotation.x, -0.5);
                             }),
@@ -142,7 +142,7 @@ TEST_F(Sinks, PublishWhereARobotStandsThatIsOnABodyWithTheHeadset) {
   Peer peer(test_settings());
   const dds_entity_t reader =
       peer.reader(tf_type(), k_tf_topic, Reliability::reliable, Durability::volatile_data, 100);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   const HeadPose head{Time{} + milliseconds(30), true, Pose{}};
   EXPECT_TRUE(sink.offer_frame({head, true, {Quaternion::Identity(), Vector3(4, 5, 6)}}));
@@ -153,7 +153,7 @@ TEST_F(Sinks, PublishWhereARobotStandsThatIsOnABodyWithTheHeadset) {
                               EXPECT_STREQ(robot.header.frame_id, "hmd_world");
                               EXPECT_STREQ(robot.child_frame_id, "robot_base");
                               EXPECT_EQ(unix_ns(robot.header.stamp),
-                                        k_board_start.nanoseconds + 30'000'000);
+                                        k_clock_start.nanoseconds + 30'000'000);
                               EXPECT_EQ(robot.transform.translation.z, 6);
                             }),
             1u);
@@ -166,7 +166,7 @@ TEST_F(Sinks, PublishAStatusAndNoPoseForALostTool) {
                                          Durability::volatile_data, 10);
   const dds_entity_t statuses =
       peer.reader(status_type(), pen.status, Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   sink.offer(lost_sample_at(5));
   sink.offer(sample_at(6));
@@ -175,7 +175,7 @@ TEST_F(Sinks, PublishAStatusAndNoPoseForALostTool) {
                                 [&](const StatusMessage& message) {
                                   states.push_back(message.state);
                                   EXPECT_EQ(unix_ns(message.stream_start),
-                                            k_board_start.nanoseconds + 20'000'000);
+                                            k_clock_start.nanoseconds + 20'000'000);
                                   EXPECT_EQ(message.marker_mask, 0b1011);
                                 }),
             2u);
@@ -186,7 +186,7 @@ TEST_F(Sinks, PublishAStatusAndNoPoseForALostTool) {
                                        stamps.push_back(unix_ns(message.header.stamp));
                                      }),
             1u);
-  EXPECT_EQ(stamps, (std::vector<std::int64_t>{k_board_start.nanoseconds + 24'000'000}));
+  EXPECT_EQ(stamps, (std::vector<std::int64_t>{k_clock_start.nanoseconds + 24'000'000}));
 }
 
 TEST_F(Sinks, KeepEachToolOnTopicsOfItsOwn) {
@@ -198,7 +198,7 @@ TEST_F(Sinks, KeepEachToolOnTopicsOfItsOwn) {
                                          Reliability::reliable, Durability::volatile_data, 10);
   const dds_entity_t second = peer.reader(status_type(), "rt/glint/tool_8700339_status",
                                           Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   sink.offer(sample_at(1, 0));
   sink.offer(sample_at(1, 1));
@@ -245,20 +245,20 @@ TEST_F(Sinks, TellWhereARobotThatIsFollowedNowStandsBesideTheOtherStaticTransfor
   Peer peer(settings);
   const dds_entity_t reader = peer.reader(tf_type(), k_tf_static_topic, Reliability::reliable,
                                           Durability::transient_local, 100);
-  std::map<std::string, double> places;
-  const auto hear = [&](const TfMessage& message) {
+  std::map<std::string, double> transforms_x;
+  const auto store_transforms = [&](const TfMessage& message) {
     EXPECT_EQ(message.transforms._length, 2u);
-    places.clear();
+    transforms_x.clear();
     for (std::uint32_t i = 0; i < message.transforms._length; ++i) {
       const auto& one = message.transforms._buffer[i];
-      places[one.child_frame_id] = one.transform.translation.x;
+      transforms_x[one.child_frame_id] = one.transform.translation.x;
     }
   };
   const std::map<std::string, double> now{{"hmd_tof_optical", 0.0}, {"robot_base", 0.7}};
   // A reader that matches early may receive the previous pose first.
-  for (int message = 0; message < 2 && places != now; ++message)
-    EXPECT_EQ(take<TfMessage>(reader, 1, hear), 1u);
-  EXPECT_EQ(places, now);
+  for (int message = 0; message < 2 && transforms_x != now; ++message)
+    EXPECT_EQ(take<TfMessage>(reader, 1, store_transforms), 1u);
+  EXPECT_EQ(transforms_x, now);
 }
 
 TEST_F(Sinks, SayInDiagnosticsWhatIsWrongWithATool) {
@@ -266,7 +266,7 @@ TEST_F(Sinks, SayInDiagnosticsWhatIsWrongWithATool) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(diagnostics_type(), k_diagnostics_topic,
                                           Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.offer(lost_sample_at(1));
   sink.start();
   EXPECT_GE(take<DiagnosticsMessage>(reader, 1,

@@ -36,7 +36,7 @@ dds_entity_t late_reader(Peer& peer, const TopicType& type, const std::string& t
 
 // The map is published before its reader exists.
 TEST_F(Surroundings, GiveALateListenerAllOfACloudInPieces) {
-  SurroundingsPublisher publisher(test_settings());
+  MapPublisher publisher(test_settings());
   const auto points = ramp(10'000, 0), normals = ramp(10'000, 0.25f);
   EXPECT_EQ(publisher.publish_cloud(points, normals, k_now), 0u);
   Peer peer(test_settings());
@@ -73,19 +73,19 @@ TEST_F(Surroundings, GiveALateListenerAllOfACloudInPieces) {
       ASSERT_EQ(received[i][3 + axis], normals[i][axis]);
     }
   }
-  EXPECT_EQ(publisher.listeners(), 1);
-  EXPECT_TRUE(publisher.wait_for_receipts(milliseconds(k_patience_ms)));
+  EXPECT_EQ(publisher.matched_readers(), 1);
+  EXPECT_TRUE(publisher.wait_for_acknowledgements(milliseconds(k_timeout_ms)));
 }
 
 TEST_F(Surroundings, LeaveOutWhatACloudHasTooMuchAndSayHowMuch) {
-  SurroundingsPublisher publisher(test_settings());
+  MapPublisher publisher(test_settings());
   const std::size_t fits = k_cloud_messages_max * ((k_cloud_message_bytes - 1024) / 12);
   const std::vector<std::array<float, 3>> points(fits + 7, {1, 2, 3});
   EXPECT_EQ(publisher.publish_cloud(points, {}, k_now), 7u);
 }
 
 TEST_F(Surroundings, GiveTheOctomapToTheByte) {
-  SurroundingsPublisher publisher(test_settings());
+  MapPublisher publisher(test_settings());
   std::vector<std::int8_t> data;
   for (int i = 0; i < 100'000; ++i) data.push_back(static_cast<std::int8_t>(i * 7919));
   publisher.publish_octomap(data, 0.02, k_now);
@@ -105,14 +105,14 @@ TEST_F(Surroundings, GiveTheOctomapToTheByte) {
 }
 
 TEST_F(Surroundings, GiveAPathInTheRobotsFrameWithEachPointsTime) {
-  SurroundingsPublisher publisher(test_settings());
+  MapPublisher publisher(test_settings());
   std::vector<UncertainPose> points(3);
   for (int i = 0; i < 3; ++i) {
     UncertainPose& point = points[static_cast<std::size_t>(i)];
     point.time = Time{} + milliseconds(4) * i;
     point.pose = {Quaternion(0.5, -0.5, 0.5, 0.5), Vector3(0.1 * i, 2, 3)};
   }
-  publisher.publish_path(points, k_board_start, k_now);
+  publisher.publish_path(points, k_clock_start, k_now);
   Peer peer(test_settings());
   const dds_entity_t reader = late_reader(peer, path_type(), "rt/glint/path", 1);
   EXPECT_EQ(take<PathMessage>(reader, 1,
@@ -122,7 +122,7 @@ TEST_F(Surroundings, GiveAPathInTheRobotsFrameWithEachPointsTime) {
                                 const PoseStampedMessage& last = m.poses._buffer[2];
                                 EXPECT_STREQ(last.header.frame_id, "robot_base");
                                 EXPECT_EQ(time_of(last.header.stamp).nanoseconds,
-                                          k_board_start.nanoseconds + 8'000'000);
+                                          k_clock_start.nanoseconds + 8'000'000);
                                 EXPECT_EQ(last.pose.position.x, 0.2);
                                 EXPECT_EQ(last.pose.orientation.x, -0.5);
                                 EXPECT_EQ(last.pose.orientation.w, 0.5);
@@ -131,7 +131,7 @@ TEST_F(Surroundings, GiveAPathInTheRobotsFrameWithEachPointsTime) {
 }
 
 TEST_F(Surroundings, TellWhereTheRobotStandsAsAStaticTransform) {
-  SurroundingsPublisher publisher(test_settings());
+  MapPublisher publisher(test_settings());
   const StaticTransform robot{"hmd_world", "robot_base", {Quaternion(0, 0, 0, 1), {1, 2, 3}}};
   publisher.publish_static(std::array{robot}, k_now);
   Peer peer(test_settings());
@@ -149,7 +149,7 @@ TEST_F(Surroundings, TellWhereTheRobotStandsAsAStaticTransform) {
 }
 
 TEST_F(Surroundings, HaveTheNamesAndQualitiesOfRos2) {
-  SurroundingsPublisher publisher(test_settings());
+  MapPublisher publisher(test_settings());
   (void)publisher.publish_cloud(ramp(3, 0), {}, k_now);
   publisher.publish_octomap({}, 0.02, k_now);
   publisher.publish_path({}, {}, k_now);

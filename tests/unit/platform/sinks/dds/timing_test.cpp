@@ -19,7 +19,7 @@ using TimingFields = DdsTest;
 
 const ToolTopics pen = topics_of("glint", "pen");
 
-Time unix_of(Time board) { return board + k_board_start; }
+Time unix_of(Time board) { return board + k_clock_start; }
 
 dds_entity_t status_reader(Peer& peer) {
   return peer.reader(status_type(), pen.status, Reliability::reliable, Durability::volatile_data,
@@ -28,7 +28,7 @@ dds_entity_t status_reader(Peer& peer) {
 
 TEST(Stamps, AreSecondsAndNanosecondsOfUnixTimeAndTheNearestThatFitBeyond) {
   const auto parts = [](std::int64_t ns) {
-    const StampMessage stamp = stamp_message({ns});
+    const TimeMessage stamp = time_message({ns});
     return std::pair{stamp.sec, stamp.nanosec};
   };
   EXPECT_EQ(parts(1'700'000'000'123'456'789), (std::pair{1'700'000'000, 123'456'789U}));
@@ -36,14 +36,14 @@ TEST(Stamps, AreSecondsAndNanosecondsOfUnixTimeAndTheNearestThatFitBeyond) {
   EXPECT_EQ(parts(-1), (std::pair{0, 0U}));
   EXPECT_EQ(parts(INT64_MAX), (std::pair{INT32_MAX, 999'999'999U}));
   const Time time{1'699'999'999'999'999'999};
-  EXPECT_EQ(time_of(stamp_message(time)), time);
+  EXPECT_EQ(time_of(time_message(time)), time);
 }
 
 TEST_F(TimingFields, TellOfEachTickWhenItWasReleasedAndWhenItsFrameWasTaken) {
   DdsSink sink(test_settings());
   Peer peer(test_settings());
   const dds_entity_t reader = status_reader(peer);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   for (std::uint32_t tick = 3; tick < 8; ++tick) sink.offer(sample_at(tick));
   std::uint32_t tick = 3;
@@ -72,7 +72,7 @@ TEST_F(TimingFields, GiveThePoseItsCovarianceAndItsTransformTheTimeForWhichTheyH
   const dds_entity_t status = status_reader(peer), pose = reader(pose_stamped_type(), pen.pose),
                      covariance = reader(pose_covariance_type(), pen.pose_covariance),
                      tf = reader(tf_type(), k_tf_topic);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   const PoseSample sample = sample_at(9);
   sink.offer(sample);
@@ -101,7 +101,7 @@ TEST_F(TimingFields, HaveNoMeasurementsTimeBeforeAnythingWasMeasuredAndKeepItOnc
   DdsSink sink(test_settings());
   Peer peer(test_settings());
   const dds_entity_t reader = status_reader(peer);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   PoseSample nothing;
   nothing.tick = Time{} + k_period;
@@ -122,7 +122,7 @@ TEST_F(TimingFields, CountTheTicksThatWereSkippedAndCloseTheStreamOnePeriodOn) {
   DdsSink sink(test_settings());
   Peer peer(test_settings());
   const dds_entity_t reader = status_reader(peer);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   for (const std::uint32_t tick : {5, 6, 9, 10}) sink.offer(sample_at(tick));
   sink.stop();
@@ -146,7 +146,7 @@ DiagnosticEntry diagnostic_entry(const DdsSettings& settings, const std::string&
   Peer peer(settings);
   const dds_entity_t reader = peer.reader(diagnostics_type(), k_diagnostics_topic,
                                           Reliability::reliable, Durability::volatile_data, 10);
-  EXPECT_TRUE(peer.meets(sink));
+  EXPECT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   DiagnosticEntry found;
   (void)take<DiagnosticsMessage>(
@@ -159,7 +159,7 @@ TEST_F(TimingFields, SayInDiagnosticsWhatWasLateAndWhatIsBestEffort) {
   const std::string refused = "glint-tick: SCHED_FIFO was refused";
   const struct {
     std::uint64_t frame, tick;
-    std::string best_effort;
+    std::string timing_faults;
     int level;
     std::string message;
   } cases[] = {{0, 0, "", ok, "in time"},
@@ -172,7 +172,7 @@ TEST_F(TimingFields, SayInDiagnosticsWhatWasLateAndWhatIsBestEffort) {
     overruns.tick = expected.tick;
     DdsSettings settings = test_settings();
     settings.overruns = &overruns;
-    settings.best_effort = expected.best_effort;
+    settings.timing_faults = expected.timing_faults;
     const DiagnosticEntry found = diagnostic_entry(settings, "glint: timing");
     EXPECT_EQ(found.level, expected.level);
     EXPECT_EQ(found.message, expected.message);
@@ -180,12 +180,12 @@ TEST_F(TimingFields, SayInDiagnosticsWhatWasLateAndWhatIsBestEffort) {
                                 {"overruns_frame", std::to_string(expected.frame)},
                                 {"overruns_tick", std::to_string(expected.tick)},
                                 {"ticks_source_late", "0"},
-                                {"best_effort", expected.best_effort}}));
+                                {"best_effort", expected.timing_faults}}));
   }
 }
 
 TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
-  FollowedRobotNotes robot;
+  RobotTrackingStatus robot;
   DdsSettings settings = test_settings();
   EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, -1);
   settings.robot = &robot;
@@ -195,9 +195,9 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
   EXPECT_EQ(followed.level, 0);
   EXPECT_EQ(followed.message, "followed");
   robot.jumps = 3;
-  robot.unsure = 2;
-  robot.shift_m = 0.0312;
-  robot.turn_rad = 0.035;
+  robot.inconclusive = 2;
+  robot.translation_m = 0.0312;
+  robot.rotation_rad = 0.035;
   robot.jumped = true;
   const DiagnosticEntry jumped = diagnostic_entry(settings, "glint: robot");
   EXPECT_EQ(jumped.level, 1);
@@ -241,10 +241,10 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheSourceIsTooSlow) {
 }
 
 TEST_F(TimingFields, SayInDiagnosticsThatTheRobotsJointsAreNoLongerHeard) {
-  FollowedRobotNotes robot;
+  RobotTrackingStatus robot;
   DdsSettings settings = test_settings();
   settings.robot = &robot;
-  robot.without_joints = 4;
+  robot.skipped_without_joints = 4;
   robot.joints_lost = true;
   const DiagnosticEntry lost = diagnostic_entry(settings, "glint: robot");
   EXPECT_EQ(lost.level, 1);

@@ -73,7 +73,7 @@ Definitions ros_definitions() {
        "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status"},
   };
   std::ostringstream text;
-  text << std::ifstream(beside_test("TrackStatus.msg")).rdbuf();
+  text << std::ifstream(path_beside_test("TrackStatus.msg")).rdbuf();
   types["glint_msgs/TrackStatus"] = text.str();
   return types;
 }

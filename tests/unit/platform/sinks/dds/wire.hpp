@@ -29,7 +29,7 @@ struct WriterSeen {
 
 inline std::optional<WriterSeen> writer_seen_by(dds_entity_t reader) {
   dds_instance_handle_t handle = 0;
-  if (!comes_true([&] { return has_writer(reader); }) ||
+  if (!wait_until([&] { return has_writer(reader); }) ||
       dds_get_matched_publications(reader, &handle, 1) != 1) {
     return std::nullopt;
   }

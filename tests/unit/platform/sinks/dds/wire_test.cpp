@@ -23,7 +23,7 @@ const ToolTopics pen = topics_of("glint", "pen");
 
 Bytes take_bytes(dds_entity_t reader) {
   Bytes bytes;
-  (void)comes_true([&] {
+  (void)wait_until([&] {
     std::array<ddsi_serdata*, 1> sample{};
     dds_sample_info_t info;
     if (dds_takecdr(reader, sample.data(), 1, &info, DDS_ANY_STATE) != 1) return false;
@@ -44,7 +44,7 @@ TEST_F(WireFormat, OfAPoseIsLittleEndianXcdr1) {
   Peer peer(settings);
   const dds_entity_t reader = peer.reader(pose_stamped_type(), pen.pose, Reliability::reliable,
                                           Durability::volatile_data, 10);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   sink.offer(sample_at(3));
   const Bytes bytes = take_bytes(reader);
@@ -103,7 +103,7 @@ TEST_F(WireFormat, TellsRos2OfTheParticipantsEnclave) {
   Peer peer(test_settings());
   const dds_entity_t participants =
       dds_create_reader(peer.participant(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr);
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(wait_until([&] {
     void* sample[1] = {nullptr};
     dds_sample_info_t info;
     bool found = false;
@@ -121,11 +121,11 @@ TEST_F(WireFormat, ReachesBestEffortReadersToo) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(pose_stamped_type(), pen.pose, Reliability::best_effort,
                                           Durability::volatile_data, 5);
-  ASSERT_TRUE(peer.meets(sink));
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
   sink.start();
   // Best effort may lose a message.
   std::uint32_t tick = 0;
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(wait_until([&] {
     sink.offer(sample_at(tick++));
     void* sample[1] = {nullptr};
     dds_sample_info_t info;
@@ -142,12 +142,12 @@ TEST_F(WireFormat, DisposesOfNothingWhenTheSinkLeaves) {
                                           Durability::volatile_data, 10);
   {
     DdsSink sink(test_settings());
-    ASSERT_TRUE(peer.meets(sink));
+    ASSERT_TRUE(peer.wait_for_discovery(sink));
     sink.start();
     sink.offer(sample_at(1));
   }
   dds_instance_state_t last = DDS_IST_ALIVE;
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(wait_until([&] {
     void* sample[1] = {nullptr};
     dds_sample_info_t info;
     while (dds_take(reader, sample, &info, 1, 1) == 1) {

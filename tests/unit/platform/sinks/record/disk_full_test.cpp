@@ -22,7 +22,7 @@ namespace {
 RecorderSettings small_chunks() {
   RecorderSettings settings;
   settings.file.chunk_bytes = std::size_t{64} << 10;
-  settings.when_full = WhenFull::wait;
+  settings.when_full = OverflowPolicy::wait;
   return settings;
 }
 
@@ -143,7 +143,7 @@ TEST(DiskFull, LeavesNothingOfWhatDidNotFitWhole) {
     EXPECT_EQ(std::filesystem::file_size(path + ".part"), 600'010U);
     EXPECT_NE(file.error().find("write at byte 600010"), std::string::npos) << file.error();
     EXPECT_TRUE(file.append({small}));
-    EXPECT_TRUE(file.name());
+    EXPECT_TRUE(file.finish());
     EXPECT_EQ(std::filesystem::file_size(path), 600'020U);
   });
 }

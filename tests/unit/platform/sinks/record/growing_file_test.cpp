@@ -55,7 +55,7 @@ TEST(GrowingFile, KeepsItsBytesTheirNumberAndTheirChecksum) {
   EXPECT_EQ(file.size(), 7u);
   EXPECT_EQ(file.crc(), crc32(0, Bytes{1, 2, 3, 4, 5, 4, 5}));
   EXPECT_EQ(file.error(), "");
-  EXPECT_TRUE(file.name());
+  EXPECT_TRUE(file.finish());
   EXPECT_EQ(text_of(std::filesystem::path(folder.file("a"))), "\1\2\3\4\5\4\5");
 }
 
@@ -67,7 +67,7 @@ TEST(GrowingFile, WritesLongPartsInPieces) {
   for (std::size_t i = 0; i < part.size(); ++i)
     part[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
   EXPECT_TRUE(file.append({part}));
-  EXPECT_TRUE(file.name());
+  EXPECT_TRUE(file.finish());
   EXPECT_EQ(text_of(std::filesystem::path(folder.file("a"))),
             std::string(part.begin(), part.end()));
 }
@@ -83,7 +83,7 @@ TEST(GrowingFile, TakesRoomBehindItsEndAndGivesBackWhatItDidNotUse) {
   const auto taken = static_cast<std::uint64_t>(reserved.st_blocks) * 512;
   if (taken < k_room) GTEST_SKIP() << "this file system takes no room ahead";
   EXPECT_GE(taken, k_used + k_room);
-  EXPECT_TRUE(file.name());
+  EXPECT_TRUE(file.finish());
   EXPECT_LT(static_cast<std::uint64_t>(status_of(folder.file("a")).st_blocks) * 512, k_room);
 }
 
@@ -96,7 +96,7 @@ TEST(GrowingFile, RefusesToReserveWhatNoFileCanHave) {
   EXPECT_TRUE(file.append({Bytes(5, 1)})) << "the bytes themselves may still find room";
   const std::string first = file.error();
   std::filesystem::remove(file.part_path());
-  EXPECT_FALSE(file.name());
+  EXPECT_FALSE(file.finish());
   EXPECT_EQ(file.error(), first) << "the first failure is the cause of the others";
 }
 
@@ -114,7 +114,7 @@ TEST(GrowingFile, SaysWhyItDidNotGetItsName) {
   GrowingFile file(folder.file("in/a"));
   ASSERT_TRUE(file.append({Bytes(9, 1)}));
   std::filesystem::remove_all(folder.file("in"));
-  EXPECT_FALSE(file.name());
+  EXPECT_FALSE(file.finish());
   EXPECT_EQ(file.error(),
             folder.file("in/a.part") + ": rename at byte 9: No such file or directory");
 }
@@ -126,7 +126,7 @@ TEST(GrowingFile, LeavesTheOpenFilesOfTheProcessAsTheyWere) {
   {
     GrowingFile named(folder.file("a"));
     EXPECT_TRUE(named.append({Bytes(3)}));
-    EXPECT_TRUE(named.name());
+    EXPECT_TRUE(named.finish());
     EXPECT_EQ(open_files(), before) << "closed with its name";
   }
   {

@@ -110,7 +110,7 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                       {"y_px", marker.sigma_px[1]},
                       {"range_m", marker.range_sigma_m}});
     turns.push_back({{"along_x", xyz(marker.along_x)}, {"along_y", xyz(marker.along_y)}});
-    depths.push_back({{"bias_taken_m", marker.bias_taken_m}, {"peak", marker.peak}});
+    depths.push_back({{"bias_taken_m", marker.bias_subtracted_m}, {"peak", marker.peak}});
   }
   sample.expect("/glint/blobs", frame.arrival,
                 {{"header", sample.header(frame.mid_exposure, "hmd_tof_optical")},
@@ -147,14 +147,14 @@ void add_inputs(Sample& sample) {
                  {"pose",
                   {{"position", xyz(head.T_world_camera.translation)},
                    {"orientation", xyzw(head.T_world_camera.rotation)}}}});
-  const DroppedInput dropped{{10}, {20}, 30, Reason::frame_doubled};
+  const DroppedInput dropped{{10}, {20}, 30, Reason::frame_duplicate};
   sample.writer.write_dropped(dropped);
   sample.expect("/glint/dropped", dropped.arrival,
                 {{"header", sample.header(dropped.arrival, "hmd_tof_optical")},
                  {"mid_exposure_ns", "10"},
                  {"arrival_ns", "20"},
                  {"sequence", 30},
-                 {"reason", static_cast<int>(Reason::frame_doubled)}});
+                 {"reason", static_cast<int>(Reason::frame_duplicate)}});
 }
 
 void add_button(Sample& sample, const ButtonEvent& event) {

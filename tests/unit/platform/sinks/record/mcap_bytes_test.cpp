@@ -110,7 +110,7 @@ class McapBytes : public testing::Test {
   // Message times decrease.
   static std::uint64_t log_time(int i) { return 1000 - static_cast<std::uint64_t>(i); }
   // Expects a record of this kind and length at this offset.
-  void expect_place(std::uint64_t offset, std::uint64_t length, int kind) {
+  void expect_record_at(std::uint64_t offset, std::uint64_t length, int kind) {
     const auto found = std::find_if(all_.begin(), all_.end(), [&](const Record& record) {
       return record.offset == offset && record.kind == kind;
     });
@@ -218,7 +218,7 @@ TEST_F(McapBytes, HoldEachChunkWithItsChecksumItsMessagesAndTheirIndex) {
     Cursor index(indexes[i].content);
     const std::uint64_t start = index.number(8), end = index.number(8);
     const std::uint64_t offset = index.number(8), length = index.number(8);
-    expect_place(offset, length, 6);
+    expect_record_at(offset, length, 6);
     EXPECT_EQ(times[offset], std::make_pair(start, end));
     Cursor offsets(index.text());
     const std::uint64_t index_bytes = index.number(8);
@@ -276,7 +276,7 @@ TEST_F(McapBytes, NameSchemasChannelsAttachmentsAndMetadata) {
   const Text& content = attachments[0].content;
   EXPECT_EQ(attachment.number(4), checksum(content.substr(0, content.size() - 4)));
   const std::uint64_t offset = place.number(8);
-  expect_place(offset, place.number(8), 9);
+  expect_record_at(offset, place.number(8), 9);
   EXPECT_EQ(place.number(8), k_attached_at);
   EXPECT_EQ(place.number(8), k_attached_at);
   EXPECT_EQ(place.number(8), 3U);
@@ -290,7 +290,7 @@ TEST_F(McapBytes, NameSchemasChannelsAttachmentsAndMetadata) {
   EXPECT_EQ(texts.text(), "closing");
   EXPECT_EQ(texts.text(), Text("\1\0\0\0b\1\0\0\0002\1\0\0\0c\0\0\0\0", 19));
   const std::uint64_t metadata_at = index.number(8);
-  expect_place(metadata_at, index.number(8), 12);
+  expect_record_at(metadata_at, index.number(8), 12);
   EXPECT_EQ(index.text(), "closing");
 
   const std::vector<Record> statistics = of_kind(all_, 11);

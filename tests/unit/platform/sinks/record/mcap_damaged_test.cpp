@@ -39,7 +39,7 @@ TEST(Mcap, CutAnywhereIsReadUpToItsLastWholeChunkIfAskedFor) {
     test::write_whole(path, Bytes(bytes.begin(), bytes.begin() + std::ssize(bytes) * part / 50));
     EXPECT_NE(test::refusal(path), "");
     McapReader reader(path, McapEnding::optional);
-    EXPECT_TRUE(reader.cut_short());
+    EXPECT_TRUE(reader.is_truncated());
     const int count = test::count_messages(reader);
     EXPECT_GE(count, most);
     most = std::max(most, count);
@@ -99,7 +99,7 @@ TEST(Mcap, ThatIsWholeLosesNothing) {
   const std::string path = folder.file("a.mcap");
   test::write_file(path);
   McapReader reader(path, McapEnding::optional);
-  EXPECT_FALSE(reader.cut_short());
+  EXPECT_FALSE(reader.is_truncated());
   EXPECT_EQ(test::count_messages(reader), test::k_messages);
   EXPECT_FALSE(reader.losses().any());
   EXPECT_FALSE(reader.losses().at_least);
@@ -117,7 +117,7 @@ TEST(Mcap, CutBehindItsDataEndLosesNothingAndKeepsWhatStandsBetweenItsChunks) {
   bytes.resize(offset + length);
   test::write_whole(path, bytes);
   McapReader reader(path, McapEnding::optional);
-  EXPECT_TRUE(reader.cut_short());
+  EXPECT_TRUE(reader.is_truncated());
   EXPECT_EQ(test::count_messages(reader), test::k_messages);
   EXPECT_FALSE(reader.losses().any());
   EXPECT_FALSE(reader.losses().at_least);
@@ -242,7 +242,7 @@ TEST(Mcap, WithAnyByteChangedIsRefusedOrReadsTheSame) {
       McapReader reader(path, McapEnding::optional);
       const int count = test::count_messages(reader);
       EXPECT_GE(count, test::k_messages - 10) << why;
-      if (reader.cut_short()) continue;
+      if (reader.is_truncated()) continue;
       EXPECT_EQ(count + static_cast<int>(missing_messages(reader)), test::k_messages) << why;
     } catch (const InputError& error) {
       ++refused_as_well;

@@ -59,8 +59,8 @@ bool decode_by_xor(std::string_view compression, std::span<const std::uint8_t> f
 class McapRefusals : public testing::Test {
  protected:
   // The reader's message for these bytes without the path; the number of messages if none.
-  std::string said(const Bytes& bytes, ChunkDecoder decoder = nullptr,
-                   McapEnding ending = McapEnding::required) {
+  std::string error_of(const Bytes& bytes, ChunkDecoder decoder = nullptr,
+                       McapEnding ending = McapEnding::required) {
     std::ofstream(path_, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
     try {
@@ -102,15 +102,15 @@ Bytes chunk_of(const Bytes& records, McapChunkHeading heading = {}) {
 }
 
 TEST_F(McapRefusals, AreNoneForAFileThatIsWhole) {
-  EXPECT_EQ(said(ended(file_with({}))), "0");
-  EXPECT_EQ(said(ended(file_with(channel_and(message_record())))), "1") << "without a chunk";
-  EXPECT_EQ(said(ended(file_with(chunk_of(channel_and(message_record()))))), "1");
+  EXPECT_EQ(error_of(ended(file_with({}))), "0");
+  EXPECT_EQ(error_of(ended(file_with(channel_and(message_record())))), "1") << "without a chunk";
+  EXPECT_EQ(error_of(ended(file_with(chunk_of(channel_and(message_record()))))), "1");
   Bytes unknown;
   append_heading(unknown, 0x91, 3);
   append(unknown, Bytes(3));
   append(unknown, channel_and(message_record()));
-  EXPECT_EQ(said(ended(file_with(unknown))), "1") << "a record of a later version";
-  EXPECT_EQ(said(ended(file_with(chunk_of(unknown)))), "1");
+  EXPECT_EQ(error_of(ended(file_with(unknown))), "1") << "a record of a later version";
+  EXPECT_EQ(error_of(ended(file_with(chunk_of(unknown)))), "1");
 }
 
 TEST_F(McapRefusals, NameWhatAFooterLacks) {
@@ -118,27 +118,27 @@ TEST_F(McapRefusals, NameWhatAFooterLacks) {
   append_footer_heading(bytes, 0, 0);
   append(bytes, std::uint32_t{0});
   append(bytes, k_mcap_magic);
-  EXPECT_EQ(said(bytes),
+  EXPECT_EQ(error_of(bytes),
             "8: a file without an index; expected an index, as every recording of "
             "Glint has");
   bytes[8] = 3;
-  EXPECT_EQ(said(bytes),
+  EXPECT_EQ(error_of(bytes),
             "8: no footer; expected a footer record of 20 bytes before the last magic");
   bytes[8] = 2;
   bytes[9] = 21;
-  EXPECT_EQ(said(bytes),
+  EXPECT_EQ(error_of(bytes),
             "8: no footer; expected a footer record of 20 bytes before the last magic");
   bytes[9] = 20;
   for (const std::uint8_t start : {7, 9}) {
     bytes[17] = start;
-    EXPECT_EQ(said(bytes),
+    EXPECT_EQ(error_of(bytes),
               "8: an index at byte " + std::to_string(start) + "; expected one inside the file");
   }
   bytes[17] = 8;
-  EXPECT_EQ(said(bytes), "8: no header; expected a header record right after the first bytes")
+  EXPECT_EQ(error_of(bytes), "8: no header; expected a header record right after the first bytes")
       << "an index may be empty";
   bytes.pop_back();
-  EXPECT_EQ(said(bytes),
+  EXPECT_EQ(error_of(bytes),
             "44: the file ends without its index: it was cut short; expected a "
             "recording that was closed; --allow-truncated reads what is whole");
 }
@@ -149,13 +149,13 @@ TEST_F(McapRefusals, NameARecordThatDoesNotFit) {
   const std::string within =
       "; expected a record within the 13 bytes that follow, and at most "
       "268435456";
-  EXPECT_EQ(said(ended(file_with(record))),
+  EXPECT_EQ(error_of(ended(file_with(record))),
             std::to_string(k_first) + ": a record of kind 0 and 0 bytes" + within);
   record[0] = 0x80;
   record[1] = 13;
-  EXPECT_EQ(said(ended(file_with(record))), "0") << "up to the last byte";
+  EXPECT_EQ(error_of(ended(file_with(record))), "0") << "up to the last byte";
   record[1] = 14;
-  EXPECT_EQ(said(ended(file_with(record))),
+  EXPECT_EQ(error_of(ended(file_with(record))),
             std::to_string(k_first) + ": a record of kind 128 and 14 bytes" + within);
   record.resize(8);  // one byte of a heading of nine is missing before the data end's 13 bytes
   Bytes bytes = file_with({});
@@ -164,24 +164,24 @@ TEST_F(McapRefusals, NameARecordThatDoesNotFit) {
   append_footer_heading(bytes, summary_at, 0);
   append(bytes, std::uint32_t{0});
   append(bytes, k_mcap_magic);
-  EXPECT_EQ(said(bytes), std::to_string(summary_at) + ": 8 bytes; expected a record");
+  EXPECT_EQ(error_of(bytes), std::to_string(summary_at) + ": 8 bytes; expected a record");
 }
 
 TEST_F(McapRefusals, NameAChecksumThatDisagrees) {
   const Bytes inside = channel_and(message_record());
   McapChunkHeading heading;
   heading.crc = crc32(0, inside);
-  EXPECT_EQ(said(ended(file_with(chunk_of(inside, heading)))), "1");
+  EXPECT_EQ(error_of(ended(file_with(chunk_of(inside, heading)))), "1");
   const std::string right = std::to_string(heading.crc);
   heading.crc = 7;
-  EXPECT_EQ(said(ended(file_with(chunk_of(inside, heading)))),
+  EXPECT_EQ(error_of(ended(file_with(chunk_of(inside, heading)))),
             std::to_string(k_first) + ": a chunk with checksum " + right +
                 "; expected 7; the file is damaged here; --allow-truncated reads all but this "
                 "chunk");
 
   const Bytes bytes = file_with(inside);
-  EXPECT_EQ(said(ended(bytes, {{}, crc32(0, bytes), 0})), "1");
-  EXPECT_EQ(said(ended(bytes, {{}, 7, 0})),
+  EXPECT_EQ(error_of(ended(bytes, {{}, crc32(0, bytes), 0})), "1");
+  EXPECT_EQ(error_of(ended(bytes, {{}, 7, 0})),
             std::to_string(bytes.size()) + ": records with checksum " +
                 std::to_string(crc32(0, bytes)) +
                 "; expected 7; the file is damaged before this place");
@@ -190,8 +190,8 @@ TEST_F(McapRefusals, NameAChecksumThatDisagrees) {
   const std::uint64_t summary_at = bytes.size() + 13;
   const std::uint32_t summary_crc =
       crc32(0, std::span(whole).subspan(summary_at, whole.size() - 12 - summary_at));
-  EXPECT_EQ(said(ended(bytes, {{}, 0, summary_crc})), "1");
-  EXPECT_EQ(said(ended(bytes, {{}, 0, 7})),
+  EXPECT_EQ(error_of(ended(bytes, {{}, 0, summary_crc})), "1");
+  EXPECT_EQ(error_of(ended(bytes, {{}, 0, 7})),
             std::to_string(summary_at) + ": an index with checksum " + std::to_string(summary_crc) +
                 "; expected 7; the file is damaged here");
 }
@@ -207,24 +207,24 @@ TEST_F(McapRefusals, NameTheKindOfARecordThatIsTooShort) {
     Bytes record;
     append_heading(record, kind, 3);
     append(record, Bytes(3));
-    EXPECT_EQ(said(ended(file_with(record))), at + name + end);
+    EXPECT_EQ(error_of(ended(file_with(record))), at + name + end);
     if (kind == 15) continue;
-    EXPECT_EQ(said(ended(file_with(chunk_of(record)))), kind == 6 ? "0" : at + name + end)
+    EXPECT_EQ(error_of(ended(file_with(chunk_of(record)))), kind == 6 ? "0" : at + name + end)
         << "in a chunk, where no chunk is read";
   }
   Bytes schema;
   append_record(schema, McapSchema{0, "name", "encoding", "text"});
-  EXPECT_EQ(said(ended(file_with(schema))), at + "schema" + end) << "identifiers begin at 1";
+  EXPECT_EQ(error_of(ended(file_with(schema))), at + "schema" + end) << "identifiers begin at 1";
   Bytes inside = message_record();
   inside.pop_back();
-  EXPECT_EQ(said(ended(file_with(chunk_of(channel_and(inside))))), at + "chunk" + end);
+  EXPECT_EQ(error_of(ended(file_with(chunk_of(channel_and(inside))))), at + "chunk" + end);
   Bytes chunk = chunk_of(channel_and(message_record()));
   chunk[k_mcap_heading_bytes + 16] ^= 1;  // the uncompressed size
-  EXPECT_EQ(said(ended(file_with(chunk))), at + "chunk" + end);
+  EXPECT_EQ(error_of(ended(file_with(chunk))), at + "chunk" + end);
 }
 
 TEST_F(McapRefusals, NameTheChannelThatIsNotDescribed) {
-  EXPECT_EQ(said(ended(file_with(message_record(9)))),
+  EXPECT_EQ(error_of(ended(file_with(message_record(9)))),
             std::to_string(k_first) +
                 ": a message of channel 9; expected one of a channel described before");
 }
@@ -236,7 +236,7 @@ TEST_F(McapRefusals, NameTheIndexThatPointsOutOfTheFile) {
     index.length = length;
     Ending ending;
     append_record(ending.summary, index);
-    return said(ended(file_with({}), ending));
+    return error_of(ended(file_with({}), ending));
   };
   const auto expect_refused = [&](const char* name, const auto& index) {
     const std::string refusal = std::to_string(summary_at) + ": " + name +
@@ -256,7 +256,7 @@ TEST_F(McapRefusals, NameTheIndexThatPointsOutOfTheFile) {
   Ending part;
   append_heading(part.summary, 11, 3);
   append(part.summary, Bytes(3));
-  EXPECT_EQ(said(ended(file_with({}), part)),
+  EXPECT_EQ(error_of(ended(file_with({}), part)),
             std::to_string(summary_at) +
                 ": summary record too short for its fields; expected "
                 "the fields of the MCAP specification");
@@ -273,16 +273,16 @@ TEST_F(McapRefusals, NameACompressionThatCannotBeRead) {
     heading.compression = name;
     const Bytes bytes = ended(file_with(chunk_of(inside, heading)));
     const std::string shown = at + name.substr(0, 16) + "'; expected ";
-    EXPECT_EQ(said(bytes), shown + "chunks without compression, as Glint writes them");
-    EXPECT_EQ(said(bytes, decode_by_xor), name == "zstd"  ? "1"
-                                          : name == "lz4" ? shown +
-                                                                "one that is whole; the file "
-                                                                "is damaged here"
-                                                          : shown + "zstd, lz4 or none");
+    EXPECT_EQ(error_of(bytes), shown + "chunks without compression, as Glint writes them");
+    EXPECT_EQ(error_of(bytes, decode_by_xor), name == "zstd"  ? "1"
+                                              : name == "lz4" ? shown +
+                                                                    "one that is whole; the file "
+                                                                    "is damaged here"
+                                                              : shown + "zstd, lz4 or none");
   }
   heading.compression = "zstd";
   heading.uncompressed_bytes = k_mcap_record_bytes_max + 1;
-  EXPECT_EQ(said(ended(file_with(chunk_of(inside, heading))), decode_by_xor),
+  EXPECT_EQ(error_of(ended(file_with(chunk_of(inside, heading))), decode_by_xor),
             std::to_string(k_first) +
                 ": chunk record too short for its fields; expected the "
                 "fields of the MCAP specification");
@@ -295,10 +295,10 @@ TEST_F(McapRefusals, NameMetadataThatIsTooShort) {
   Ending ending;
   append_record(ending.summary, McapMetadataIndex{k_first, 12, "name"});
   const Bytes bytes = ended(file_with(record), ending);
-  EXPECT_EQ(said(bytes), std::to_string(k_first) +
-                             ": metadata record too short for its fields; expected the fields "
-                             "of the MCAP specification");
-  EXPECT_EQ(said(bytes, nullptr, McapEnding::optional), "0") << "no message needs it";
+  EXPECT_EQ(error_of(bytes), std::to_string(k_first) +
+                                 ": metadata record too short for its fields; expected the fields "
+                                 "of the MCAP specification");
+  EXPECT_EQ(error_of(bytes, nullptr, McapEnding::optional), "0") << "no message needs it";
 }
 
 TEST_F(McapRefusals, NameAnAttachmentThatIsDamaged) {
@@ -313,7 +313,7 @@ TEST_F(McapRefusals, NameAnAttachmentThatIsDamaged) {
     put_little_endian(std::span(record).subspan(1, 8), record.size() - k_mcap_heading_bytes);
     Ending ending;
     append_record(ending.summary, index);
-    EXPECT_EQ(said(ended(file_with(record), ending)), "0") << "asked for by nothing";
+    EXPECT_EQ(error_of(ended(file_with(record), ending)), "0") << "asked for by nothing";
     McapReader reader(path_);
     try {
       const Bytes data = reader.attachment(reader.attachments().at(0));
@@ -358,9 +358,9 @@ TEST_F(McapRefusals, LeaveNothingOfAnIndexThatIsNotUsed) {
   append_record(ending.summary, index);
   index.length = 8;  // wrong
   append_record(ending.summary, index);
-  EXPECT_NE(said(ended(file_with(records), ending)).find("chunk index"), std::string::npos);
+  EXPECT_NE(error_of(ended(file_with(records), ending)).find("chunk index"), std::string::npos);
   McapReader reader(path_, McapEnding::optional);
-  EXPECT_TRUE(reader.cut_short());
+  EXPECT_TRUE(reader.is_truncated());
   const auto message = reader.next();
   ASSERT_TRUE(message);
   EXPECT_EQ(message->channel->topic, "/one");
@@ -379,7 +379,7 @@ TEST_F(McapRefusals, OfACompressionEndTheReadingOnlyWhereTheFileIsSound) {
     heading.compression = known ? "lz4" : "lzX";
     Bytes records = chunk_of(Bytes(10), heading);
     append(records, channel_and(message_record()));
-    const std::string found = said(ended(file_with(records)), nullptr, McapEnding::optional);
+    const std::string found = error_of(ended(file_with(records)), nullptr, McapEnding::optional);
     EXPECT_EQ(found.find("compressed with 'lz4'") != std::string::npos, known) << found;
     if (!known) {
       EXPECT_EQ(found, "1");

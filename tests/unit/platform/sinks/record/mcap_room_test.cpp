@@ -16,11 +16,11 @@
 
 // Replaces the C library's function: records the end of the space that this thread allocated.
 namespace {
-thread_local std::uint64_t g_room_end = 0;
+thread_local std::uint64_t g_allocated_end = 0;
 }  // namespace
 
 extern "C" int fallocate(int descriptor, int mode, off_t offset, off_t length) {
-  g_room_end = std::max(g_room_end, static_cast<std::uint64_t>(offset + length));
+  g_allocated_end = std::max(g_allocated_end, static_cast<std::uint64_t>(offset + length));
   return static_cast<int>(::syscall(SYS_fallocate, descriptor, mode, offset, length));
 }
 
@@ -183,11 +183,11 @@ TEST(McapRoom, TakenBeforeTheLastPartHoldsTheEnding) {
     McapSettings settings;
     settings.chunk_bytes = 1;
     settings.closing_bytes = 100;
-    g_room_end = 0;
+    g_allocated_end = 0;
     McapWriter writer(path, "ros2", "glint", settings);
     const auto expect_room = [&] {
-      EXPECT_LE(writer.bytes(), g_room_end);
-      EXPECT_GE(g_room_end, writer.bytes() + settings.closing_bytes + k_fixed_bytes);
+      EXPECT_LE(writer.bytes(), g_allocated_end);
+      EXPECT_GE(g_allocated_end, writer.bytes() + settings.closing_bytes + k_fixed_bytes);
     };
     expect_room();
     for (int i = 0; i < load.channels; ++i)
@@ -202,8 +202,8 @@ TEST(McapRoom, TakenBeforeTheLastPartHoldsTheEnding) {
     writer.flush_chunk();
     expect_room();
     ASSERT_TRUE(writer.close("end", {{"fact", "true"}}));
-    EXPECT_LE(writer.bytes(), g_room_end);
-    EXPECT_GE(writer.bytes() + settings.closing_bytes + k_fixed_bytes, g_room_end)
+    EXPECT_LE(writer.bytes(), g_allocated_end);
+    EXPECT_GE(writer.bytes() + settings.closing_bytes + k_fixed_bytes, g_allocated_end)
         << "more than the ending may need";
     EXPECT_EQ(writer.bytes(), std::filesystem::file_size(path));
     EXPECT_EQ(writer.messages(), static_cast<std::uint64_t>(load.chunks * load.channels));

@@ -37,7 +37,7 @@ FramePatch patch_of(std::span<const std::uint8_t> pixels) {
 Bytes written_frame() {
   const Bytes pixels{1, 2, 3, 4, 5, 6, 7, 8};
   CdrWriter to;
-  write_message(to, patch_of(pixels), PixelPlace::in_message, k_offset);
+  write_message(to, patch_of(pixels), PixelStorage::in_message, k_offset);
   return {to.bytes().begin(), to.bytes().end()};
 }
 
@@ -130,7 +130,7 @@ TEST(MessageFields, FollowTheEncapsulationOfLittleEndianCdr) {
 }
 
 TEST(MessageFields, OfADroppedInputComeBack) {
-  const DroppedInput input{{11}, {22}, 33, Reason::frame_doubled};
+  const DroppedInput input{{11}, {22}, 33, Reason::frame_duplicate};
   const DroppedInput back = read_dropped(written(input)).value();
   EXPECT_EQ(back.mid_exposure, input.mid_exposure);
   EXPECT_EQ(back.arrival, input.arrival);

@@ -36,11 +36,11 @@ TEST(PartFile, HasANameOfItsOwn) {
 TEST(WriteWholeFile, ReplacesAFileAndLeavesNothingElse) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.json");
-  EXPECT_EQ(write_whole_file(path, "one"), "");
-  EXPECT_EQ(write_whole_file(path, "two"), "");
+  EXPECT_EQ(write_file_atomically(path, "one"), "");
+  EXPECT_EQ(write_file_atomically(path, "two"), "");
   EXPECT_EQ(text_of(path), "two");
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
-  EXPECT_NE(write_whole_file(folder.file("nowhere/a"), "three"), "");
+  EXPECT_NE(write_file_atomically(folder.file("nowhere/a"), "three"), "");
 }
 
 TEST(WriteWholeFile, WritesIntoAPipeInsteadOfReplacingIt) {
@@ -48,7 +48,7 @@ TEST(WriteWholeFile, WritesIntoAPipeInsteadOfReplacingIt) {
   const std::string path = folder.file("pipe");
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  EXPECT_EQ(write_whole_file(path, "figures"), "");
+  EXPECT_EQ(write_file_atomically(path, "figures"), "");
   std::array<char, 16> text{};
   EXPECT_EQ(::read(reader, text.data(), text.size()), 7);
   EXPECT_STREQ(text.data(), "figures");
@@ -60,7 +60,7 @@ TEST(WriteWholeFile, ReplacesASymbolicLinkAndNotItsTarget) {
   const TemporaryFolder folder;
   std::ofstream(folder.file("target")) << "kept";
   std::filesystem::create_symlink(folder.file("target"), folder.file("link"));
-  EXPECT_EQ(write_whole_file(folder.file("link"), "new"), "");
+  EXPECT_EQ(write_file_atomically(folder.file("link"), "new"), "");
   EXPECT_EQ(text_of(folder.file("target")), "kept");
   EXPECT_EQ(text_of(folder.file("link")), "new");
 }

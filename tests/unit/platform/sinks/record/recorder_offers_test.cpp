@@ -27,7 +27,7 @@ void offer_one_of_each(RecorderLane& lane) {
   EXPECT_TRUE(lane.offer_choice(sample_choice(7)));
   const PoseSample sample = sample_output(1);
   EXPECT_TRUE(lane.offer_output(sample, record_of(sample)));
-  EXPECT_TRUE(lane.offer_dropped({{1}, {2}, 3, Reason::frame_doubled}));
+  EXPECT_TRUE(lane.offer_dropped({{1}, {2}, 3, Reason::frame_duplicate}));
   EXPECT_TRUE(lane.offer_button({{4}, Button::undo, true}));
   EXPECT_TRUE(lane.offer_robot_frame({5, {6}, RegistrationState::accepted, {}, 0.5, true}));
   EXPECT_TRUE(lane.offer_pen_buttons({8, {9}, 3}));
@@ -142,7 +142,7 @@ TEST(RecorderOffers, AreDroppedInTheLaneThatHasNoRoom) {
 
 // An offer larger than the lane is dropped at once, even if the lane waits when full.
 TEST(RecorderOffers, DoNotWaitForRoomThatThereNeverIs) {
-  for (const WhenFull when_full : {WhenFull::drop, WhenFull::wait}) {
+  for (const OverflowPolicy when_full : {OverflowPolicy::drop, OverflowPolicy::wait}) {
     const TemporaryFolder folder;
     RecorderSettings settings;
     settings.when_full = when_full;

@@ -35,7 +35,7 @@ namespace {
 
 RecorderSettings waiting() {
   RecorderSettings settings;
-  settings.when_full = WhenFull::wait;
+  settings.when_full = OverflowPolicy::wait;
   return settings;
 }
 
@@ -90,7 +90,7 @@ TEST(Recorder, KeepsEveryKindOfOffer) {
     EXPECT_TRUE(recorder.frame_lane().offer_frame(buffer.view({1}, {2}, 3), rois));
     EXPECT_TRUE(recorder.frame_lane().offer_head_pose(sample_head_pose(0)));
     EXPECT_TRUE(recorder.frame_lane().offer_markers(sample_markers(2)));
-    EXPECT_TRUE(recorder.input_lane().offer_dropped({{1}, {2}, 3, Reason::frame_doubled}));
+    EXPECT_TRUE(recorder.input_lane().offer_dropped({{1}, {2}, 3, Reason::frame_duplicate}));
     const PoseSample sample = sample_output(1);
     EXPECT_TRUE(recorder.tick_lane().offer_output(sample, record_of(sample)));
     recorder.add_closing_fact("frames", "1");

@@ -146,7 +146,7 @@ TEST(Recording, ReadsAFrameWithoutItsStampsSigmaButNoneWithAPartOfIt) {
   std::vector<std::uint8_t> pixels(pixel_bytes(layout));
   copy_pixels(frame, layout, pixels);
   CdrWriter writer;
-  write_message(writer, FramePatch{layout, pixels}, PixelPlace::in_message, {});
+  write_message(writer, FramePatch{layout, pixels}, PixelStorage::in_message, {});
   const auto message = writer.bytes();
   const auto read = read_frame(message, {}, {});
   ASSERT_TRUE(read);
@@ -190,7 +190,7 @@ TEST(Recording, ReadsMarkersOfOlderRecordings) {
   const auto read = read_markers(all.first(all.size() - turns - sigmas));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->markers.count, 3);
-  EXPECT_EQ(read->markers.items[2].flags, k_marker_ring_depth);
+  EXPECT_EQ(read->markers.items[2].flags, k_marker_annulus_depth);
   EXPECT_EQ(read->markers.items[2].sigma_px[0], 0);
   EXPECT_FALSE(read_markers(all.first(all.size() - 1)));
 }

@@ -18,7 +18,7 @@ namespace glint::recording_refusals_test {
 namespace {
 
 // The reader's message without the path; "" if it accepts the file.
-std::string refusal(const std::string& path, ReadTolerance tolerance = {}) {
+std::string error_of(const std::string& path, ReadTolerance tolerance = {}) {
   try {
     RecordingReader reader(path, tolerance);
     while (reader.next()) {
@@ -37,15 +37,15 @@ std::string refusal_with(const std::string& fact, const std::string& value,
                          const std::string& metadata = k_opening_metadata) {
   const TemporaryFolder folder;
   const std::string path = folder.file("run.mcap");
-  McapTexts facts{{k_fact_format, "1"},
+  McapTexts texts{{k_fact_format, "1"},
                   {k_fact_level, "roi"},
                   {k_fact_nominal_tick, "4000000"},
                   {k_fact_unix_offset, "-5"}};
-  facts[fact] = value;
+  texts[fact] = value;
   McapWriter writer(path, profile, "glint");
-  writer.add_metadata(metadata, facts);
+  writer.add_metadata(metadata, texts);
   EXPECT_TRUE(writer.close(k_closing_metadata, {{k_fact_complete, "true"}}));
-  return refusal(path);
+  return error_of(path);
 }
 
 TEST(RecordingRefusals, NameTheFactThatIsWrong) {
@@ -84,13 +84,13 @@ TEST(RecordingRefusals, NameWhatARecordingLost) {
         {{k_fact_complete, complete}, {k_fact_dropped, "3"}, {k_fact_ended_early, why}}));
   };
   write("false", "");
-  EXPECT_EQ(refusal(path), ":byte 0: a recording that lost 3 messages" + expected);
-  EXPECT_NE(refusal(path, {.truncated = true, .incomplete = false}), "");
-  EXPECT_EQ(refusal(path, {.truncated = false, .incomplete = true}), "");
+  EXPECT_EQ(error_of(path), ":byte 0: a recording that lost 3 messages" + expected);
+  EXPECT_NE(error_of(path, {.truncated = true, .incomplete = false}), "");
+  EXPECT_EQ(error_of(path, {.truncated = false, .incomplete = true}), "");
   write("false", "the disk was full");
-  EXPECT_EQ(refusal(path), ":byte 0: a recording that ended early (the disk was full)" + expected);
+  EXPECT_EQ(error_of(path), ":byte 0: a recording that ended early (the disk was full)" + expected);
   write("true", "");
-  EXPECT_EQ(refusal(path), "");
+  EXPECT_EQ(error_of(path), "");
   RecordingReader reader(path);
   EXPECT_EQ(reader.level(), RecordingLevel::roi);
   EXPECT_EQ(reader.nominal_tick(), Duration{1});
@@ -125,9 +125,9 @@ TEST(RecordingRefusals, NameTheTopicOfAMessageThatIsNotWhole) {
     writer.write({other, 0, 1, 1}, Bytes{1});  // of another program: ignored
     writer.write({channel, 0, 1, 1}, Bytes{0, 1, 0, 0, 5});
     EXPECT_TRUE(writer.close(k_closing_metadata, {{k_fact_complete, "true"}}));
-    EXPECT_EQ(refusal(path), ":byte " + std::to_string(chunk_at) + ": a message on " +
-                                 std::string(topic) +
-                                 " that is not whole; expected the fields of its type");
+    EXPECT_EQ(error_of(path), ":byte " + std::to_string(chunk_at) + ": a message on " +
+                                  std::string(topic) +
+                                  " that is not whole; expected the fields of its type");
   }
 }
 
@@ -168,7 +168,7 @@ TEST(RecordingLosses, CountTheFrameWhosePixelsAreDamaged) {
     std::string bytes = whole;
     bytes[chunks[damaged] + 100] = static_cast<char>(bytes[chunks[damaged] + 100] ^ 1);
     std::ofstream(path, std::ios::binary) << bytes;
-    EXPECT_NE(refusal(path), "");
+    EXPECT_NE(error_of(path), "");
     RecordingReader reader(path, {.truncated = true, .incomplete = false});
     std::vector<std::uint64_t> frames;
     while (const auto message = reader.next())
@@ -236,7 +236,7 @@ TEST(RecordingLosses, OfAFileCutShortHideNoFactOfItsBeginning) {
   const std::string whole = text_of(std::filesystem::path(path));
   const std::vector<std::size_t> chunks = chunks_of(whole);
   std::ofstream(path, std::ios::binary) << whole.substr(0, chunks[6]);
-  EXPECT_NE(refusal(path), "");
+  EXPECT_NE(error_of(path), "");
   RecordingReader reader(path, {.truncated = true, .incomplete = false});
   int frames = 0;
   while (reader.next()) ++frames;

@@ -77,12 +77,12 @@ inline MarkerFrame sample_markers(int count) {
     marker.centroid_px = Vector2(10.25 + i, 20.5);
     marker.area_px = static_cast<std::uint32_t>(30 + i);
     marker.blob = static_cast<std::uint16_t>(i);
-    marker.flags = k_marker_ring_depth;
+    marker.flags = k_marker_annulus_depth;
     marker.sigma_px = {0.25F, 0.5F + static_cast<float>(i)};
     marker.range_sigma_m = 0.125F;
     marker.along_x = Vector3(0.004, 0.0, -0.003);
     marker.along_y = Vector3(0.0, 0.005 + 0.001 * i, 0.0);
-    marker.bias_taken_m = 0.0625F;
+    marker.bias_subtracted_m = 0.0625F;
     marker.peak = static_cast<std::uint16_t>(900 + i);
   }
   return frame;

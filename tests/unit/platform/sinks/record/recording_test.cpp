@@ -187,7 +187,7 @@ TEST(Recording, GivesBackMarkersAtLevelBlobs) {
     EXPECT_EQ(a.range_sigma_m, b.range_sigma_m);
     EXPECT_EQ(a.along_x, b.along_x);
     EXPECT_EQ(a.along_y, b.along_y);
-    EXPECT_EQ(a.bias_taken_m, b.bias_taken_m);
+    EXPECT_EQ(a.bias_subtracted_m, b.bias_subtracted_m);
     EXPECT_EQ(a.peak, b.peak);
   }
   EXPECT_EQ(read.markers.incomplete, Reason::blobs_full);

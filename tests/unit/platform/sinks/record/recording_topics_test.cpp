@@ -53,7 +53,7 @@ void write_frame(RecordingWriter& writer, const FrameBuffer& buffer, const Frame
   writer.write_frame({layout, pixels});
 }
 
-FrameLayout whole_layout(const FrameBuffer& buffer) {
+FrameLayout full_layout(const FrameBuffer& buffer) {
   return whole_frame_layout(buffer.view({100}, {200}, 9));
 }
 
@@ -61,7 +61,7 @@ FrameLayout whole_layout(const FrameBuffer& buffer) {
 void write_one_of_each(const std::string& path, RecordingLevel level) {
   RecordingWriter writer(path, sample_info(level));
   const FrameBuffer buffer = sample_frame(8, 6, 16);
-  write_frame(writer, buffer, whole_layout(buffer));
+  write_frame(writer, buffer, full_layout(buffer));
   writer.write_markers(sample_markers(1));
   writer.write_head_pose(sample_head_pose(1));
   writer.write_choice(sample_choice(2));
@@ -190,7 +190,7 @@ TEST(RecordingTopics, ShowAWholeFrameAsImagesOfThePlanesThatItHas) {
       const TemporaryFolder folder;
       {
         RecordingWriter writer(folder.file("run.mcap"), sample_info(RecordingLevel::full));
-        write_frame(writer, buffer, whole_layout(buffer));
+        write_frame(writer, buffer, full_layout(buffer));
       }
       const std::vector<Seen> seen = seen_in(folder.file("run.mcap"));
       ASSERT_EQ(seen.size(), has_depth ? 3u : 2u);
@@ -223,13 +223,13 @@ TEST(RecordingTopics, ShowNoPartOfAFrameAsAnImage) {
     }
     return seen_in(folder.file("run.mcap")).size();
   };
-  FrameLayout layout = whole_layout(buffer);
+  FrameLayout layout = full_layout(buffer);
   EXPECT_EQ(messages_of(layout), 3u);
   for (const Roi& part : parts) {
     layout.rectangles[0] = part;
     EXPECT_EQ(messages_of(layout), 1u) << part.x0 << ' ' << part.y0;
   }
-  layout = whole_layout(buffer);
+  layout = full_layout(buffer);
   layout.rectangles[1] = {0, 0, 1, 1};
   layout.rectangle_count = 2;
   EXPECT_EQ(messages_of(layout), 1u) << "the first of two is whole";

@@ -30,8 +30,8 @@ Pose moved(const Movement& how, double t) {
           how.shift_m.cwiseProduct(shift) + Vector3(0, 0, 0.5)};
 }
 
-StampedPose noisy(const Movement& how, double t, const Pose& pose, std::uint64_t which,
-                  std::uint64_t index) {
+TimedPose noisy(const Movement& how, double t, const Pose& pose, std::uint64_t which,
+                std::uint64_t index) {
   const sim::RandomKey key{how.seed, sim::Stream::reference, which};
   const Quaternion off =
       from_rotation_vector(how.rotation_noise_rad * sim::gaussian_vector(key, index));
@@ -40,8 +40,8 @@ StampedPose noisy(const Movement& how, double t, const Pose& pose, std::uint64_t
           {(pose.rotation * off).normalized(), pose.translation + by}};
 }
 
-std::vector<StampedPose> own_series(const Movement& how, int count = 450) {
-  std::vector<StampedPose> poses;
+std::vector<TimedPose> own_series(const Movement& how, int count = 450) {
+  std::vector<TimedPose> poses;
   for (int i = 0; i < count; ++i) {
     const double t = 1 + i / 45.0;
     poses.push_back(noisy(how, t, moved(how, t), 0, static_cast<std::uint64_t>(i)));
@@ -50,8 +50,8 @@ std::vector<StampedPose> own_series(const Movement& how, int count = 450) {
 }
 
 // Reference poses at 100 Hz, with time stamps ahead by k_offset_s.
-std::vector<StampedPose> reference_series(const Movement& how) {
-  std::vector<StampedPose> poses;
+std::vector<TimedPose> reference_series(const Movement& how) {
+  std::vector<TimedPose> poses;
   for (int i = 0; i < 1200; ++i) {
     const double t = i / 100.0;
     poses.push_back(
@@ -92,7 +92,7 @@ TEST(Align, KnowsHowSureItIs) {
 
 TEST(Align, LeavesOutWildPoses) {
   const Movement how{.position_noise_m = 0.0005, .rotation_noise_rad = 0.003};
-  std::vector<StampedPose> poses = own_series(how);
+  std::vector<TimedPose> poses = own_series(how);
   for (std::size_t i = 0; i < poses.size(); i += 5) {
     poses[i].pose.translation += Vector3(0.2, 0.1 * static_cast<double>(i % 3), -0.1);
     poses[i].pose.rotation = poses[i].pose.rotation * from_rotation_vector({0.5, 0, 0});
@@ -137,8 +137,8 @@ TEST(Align, NamesWhatTooLittleMotionLeavesOpen) {
 
 TEST(Align, RefusesSeriesThatDoNotOverlapOrBelongTogether) {
   const Movement how;
-  std::vector<StampedPose> later = own_series(how);
-  for (StampedPose& pose : later) pose.time = pose.time + milliseconds(60'000);
+  std::vector<TimedPose> later = own_series(how);
+  for (TimedPose& pose : later) pose.time = pose.time + milliseconds(60'000);
   test::expect_input_error(
       [&] { (void)align_series(later, reference_series(how), {}, "late.tum"); },
       {"late.tum", "overlap"});

@@ -19,35 +19,35 @@ const Vector3 k_turn_rad{0.004, -0.006, 0.002};
 
 // A tool that is static at several positions in turn, with measurement noise and a constant error.
 // It moves for one second between two positions.
-struct Stillness {
+struct StaticScene {
   CorrectionFrame frame = CorrectionFrame::tool;
   Vector3 shift_m = k_shift_m, turn_rad = k_turn_rad;
   double position_noise_m = 0.0004, rotation_noise_rad = 0.003;
-  int places = 3;
+  int positions = 3;
   double speed_m_s = 0;  // constant drift, which leaves no static window
   std::uint64_t seed = 1;
 };
 
-Pose truth_at(const Stillness& how, double t) {
-  const double place =
-      std::min(std::floor(t / 4) + std::max(0.0, std::fmod(t, 4.0) - 3), how.places - 1.0);
-  return {from_rotation_vector({0.3 + 0.2 * place, -0.5, 0.1}),
-          {0.02 * place + how.speed_m_s * t, -0.05, 0.45 + 0.06 * place}};
+Pose truth_at(const StaticScene& how, double t) {
+  const double position =
+      std::min(std::floor(t / 4) + std::max(0.0, std::fmod(t, 4.0) - 3), how.positions - 1.0);
+  return {from_rotation_vector({0.3 + 0.2 * position, -0.5, 0.1}),
+          {0.02 * position + how.speed_m_s * t, -0.05, 0.45 + 0.06 * position}};
 }
 
-std::vector<StampedPose> reference_of(const Stillness& how) {
-  std::vector<StampedPose> poses;
-  for (int i = 0; i < 400 * how.places; ++i) {
+std::vector<TimedPose> reference_of(const StaticScene& how) {
+  std::vector<TimedPose> poses;
+  for (int i = 0; i < 400 * how.positions; ++i) {
     poses.push_back({Time{} + milliseconds(10 * i), truth_at(how, 0.01 * i)});
   }
   return poses;
 }
 
-std::vector<StampedPose> measured_by(const Stillness& how) {
-  std::vector<StampedPose> poses;
+std::vector<TimedPose> measured_by(const StaticScene& how) {
+  std::vector<TimedPose> poses;
   const sim::RandomKey shift{how.seed, sim::Stream::reference, 0};
   const sim::RandomKey turn{how.seed, sim::Stream::reference, 1};
-  for (int i = 10; i < 180 * how.places - 10; ++i) {
+  for (int i = 10; i < 180 * how.positions - 10; ++i) {
     const auto index = static_cast<std::uint64_t>(i);
     const Time time = Time{} + microseconds(22'222LL * i);
     Pose pose = truth_at(how, Duration{time.nanoseconds}.seconds());
@@ -67,7 +67,7 @@ std::vector<StampedPose> measured_by(const Stillness& how) {
   return poses;
 }
 
-BiasResult found_for(const Stillness& how) {
+BiasResult found_for(const StaticScene& how) {
   BiasSettings settings;
   settings.frame = how.frame;
   return calibrate_bias(measured_by(how), reference_of(how), settings, "still.tum");
@@ -75,15 +75,15 @@ BiasResult found_for(const Stillness& how) {
 
 TEST(Bias, FindsAConstantErrorAlongEitherFrame) {
   for (const auto frame : {CorrectionFrame::tool, CorrectionFrame::camera}) {
-    const Stillness how{.frame = frame};
+    const StaticScene how{.frame = frame};
     const BiasResult found = found_for(how);
     for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_NEAR(found.correction.shift_m[axis], k_shift_m[axis],
-                  4 * found.shift_sigma_m[axis] + 1e-6);
-      EXPECT_NEAR(found.correction.turn_rad[axis], k_turn_rad[axis],
-                  4 * found.turn_sigma_rad[axis] + 1e-6);
+      EXPECT_NEAR(found.correction.translation_m[axis], k_shift_m[axis],
+                  4 * found.translation_sigma_m[axis] + 1e-6);
+      EXPECT_NEAR(found.correction.rotation_rad[axis], k_turn_rad[axis],
+                  4 * found.rotation_sigma_rad[axis] + 1e-6);
     }
-    EXPECT_LT(found.shift_sigma_m.maxCoeff(), 0.0001);
+    EXPECT_LT(found.translation_sigma_m.maxCoeff(), 0.0001);
     EXPECT_GT(found.rms_before_m, 0.0024);
     EXPECT_LT(found.rms_after_m, 0.0008);
     EXPECT_LT(found.rms_after_rad, 0.7 * found.rms_before_rad);
@@ -95,11 +95,12 @@ TEST(Bias, KnowsHowSureItIs) {
   double sum = 0;
   constexpr int k_runs = 60;
   for (int run = 0; run < k_runs; ++run) {
-    const Stillness how{.seed = static_cast<std::uint64_t>(run + 1)};
+    const StaticScene how{.seed = static_cast<std::uint64_t>(run + 1)};
     const BiasResult found = found_for(how);
-    const Vector3 shift = (found.correction.shift_m - k_shift_m).cwiseQuotient(found.shift_sigma_m);
+    const Vector3 shift =
+        (found.correction.translation_m - k_shift_m).cwiseQuotient(found.translation_sigma_m);
     const Vector3 turn =
-        (found.correction.turn_rad - k_turn_rad).cwiseQuotient(found.turn_sigma_rad);
+        (found.correction.rotation_rad - k_turn_rad).cwiseQuotient(found.rotation_sigma_rad);
     sum += (shift.squaredNorm() + turn.squaredNorm()) / (6 * k_runs);
   }
   std::printf("bias: squared errors in sigmas %.2f\n", sum);
@@ -108,10 +109,10 @@ TEST(Bias, KnowsHowSureItIs) {
 
 TEST(Bias, HoldsForWhatWasSeenAndLittleMore) {
   const BiasResult found = found_for({});
-  const Stillness how;
+  const StaticScene how;
   double least = 1, most = 0;
-  for (int place = 0; place < how.places; ++place) {
-    const double range = truth_at(how, 4.0 * place + 1).translation.norm();
+  for (int position = 0; position < how.positions; ++position) {
+    const double range = truth_at(how, 4.0 * position + 1).translation.norm();
     least = std::min(least, range);
     most = std::max(most, range);
   }
@@ -127,25 +128,25 @@ TEST(Bias, HoldsForWhatWasSeenAndLittleMore) {
 }
 
 TEST(Bias, LeavesOutMotionAndWildPoses) {
-  const Stillness how;
-  std::vector<StampedPose> poses = measured_by(how);
+  const StaticScene how;
+  std::vector<TimedPose> poses = measured_by(how);
   for (std::size_t i = 0; i < poses.size(); i += 5) poses[i].pose.translation.x() += 0.05;
   const BiasResult found = calibrate_bias(poses, reference_of(how), {}, "wild.tum");
   EXPECT_GE(found.moving, 80);
   EXPECT_NEAR(found.outliers, found.samples / 5, 5);
-  EXPECT_LT((found.correction.shift_m - k_shift_m).norm(), 0.0002);
+  EXPECT_LT((found.correction.translation_m - k_shift_m).norm(), 0.0002);
 }
 
 TEST(Bias, RefusesMotionTooFewPosesAndChance) {
-  const Stillness drifting{.speed_m_s = 0.05};
+  const StaticScene drifting{.speed_m_s = 0.05};
   test::expect_input_error([&] { (void)found_for(drifting); },
                            {"still.tum", "in motion", "hold camera and tool still"});
-  const Stillness how;
-  const std::vector<StampedPose> poses = measured_by(how);
+  const StaticScene how;
+  const std::vector<TimedPose> poses = measured_by(how);
   test::expect_input_error(
       [&] { (void)calibrate_bias(std::span(poses).first(20), reference_of(how), {}, "few.tum"); },
       {"few.tum", "lie within the reference's time", "at least 30"});
-  const Stillness none{.shift_m = Vector3::Zero(), .turn_rad = Vector3::Zero(), .seed = 3};
+  const StaticScene none{.shift_m = Vector3::Zero(), .turn_rad = Vector3::Zero(), .seed = 3};
   test::expect_input_error([&] { (void)found_for(none); }, {"nothing to correct"});
 }
 
@@ -153,7 +154,7 @@ TEST(Bias, SaysApartWhatIsCorrectedAndWhere) {
   BiasCorrection correction;
   EXPECT_EQ(correction_text(correction), "");
   correction.frame = CorrectionFrame::tool;
-  correction.shift_m = {0.003, 0, 0.004};
+  correction.translation_m = {0.003, 0, 0.004};
   correction.range_m = {0.35, 0.65};
   correction.off_axis_cosine = {0.5, 1};
   correction.tilt_cosine = {-0.5, 0};

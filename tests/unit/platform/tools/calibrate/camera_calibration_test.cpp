@@ -30,8 +30,8 @@ class CameraCalibration : public testing::Test {
   }
 
   // Images of a chessboard with 9 x 6 inner corners, 20 mm apart, rendered with 3 x 3 rays a pixel.
-  std::vector<std::string> board_pictures(const CameraModel& camera, double tilt_rad,
-                                          int views) const {
+  std::vector<std::string> chessboard_images(const CameraModel& camera, double tilt_rad,
+                                             int views) const {
     std::vector<std::string> paths;
     for (int view = 0; view < views; ++view) {
       const double turn = 1.9 * view;
@@ -91,10 +91,10 @@ TEST_F(CameraCalibration, FindsARationalLensAgainFromItsRays) {
 }
 
 TEST_F(CameraCalibration, FindsTheLensFromPicturesOfABoard) {
-  BoardSettings settings;
+  CameraCalibrationSettings settings;
   settings.spacing_m = 0.02;
   settings.lens = Lens::brown;
-  const BoardFit fit = calibrate_board(board_pictures(small_camera(), 0.5, 14), settings);
+  const CameraFit fit = calibrate_camera(chessboard_images(small_camera(), 0.5, 14), settings);
   EXPECT_GE(fit.images_used, 6);
   EXPECT_LT(fit.rms_px, 0.1);
   EXPECT_NEAR(fit.model.fx, 250, 1.0);
@@ -104,19 +104,19 @@ TEST_F(CameraCalibration, FindsTheLensFromPicturesOfABoard) {
 }
 
 TEST_F(CameraCalibration, SaysThatTheBoardMayHaveAnotherSizeOrHardlyTilted) {
-  BoardSettings settings;
+  CameraCalibrationSettings settings;
   settings.lens = Lens::brown;
-  const std::vector<std::string> pictures = board_pictures(small_camera(), 0.4, 5);
+  const std::vector<std::string> pictures = chessboard_images(small_camera(), 0.4, 5);
   settings.columns = 8;
   settings.rows = 7;
-  test::expect_input_error([&] { (void)calibrate_board(pictures, settings); },
+  test::expect_input_error([&] { (void)calibrate_camera(pictures, settings); },
                            {"8 x 7", "0 of 5", "count the inner corners"});
   settings.columns = 9;
   settings.rows = 6;
-  const std::vector<std::string> flat = board_pictures(small_camera(), 0.02, 6);
-  test::expect_input_error([&] { (void)calibrate_board(flat, settings); }, {"tilt the board"});
+  const std::vector<std::string> flat = chessboard_images(small_camera(), 0.02, 6);
+  test::expect_input_error([&] { (void)calibrate_camera(flat, settings); }, {"tilt the board"});
   test::expect_input_error(
-      [&] { (void)calibrate_board({write("no.png", "no picture")}, settings); },
+      [&] { (void)calibrate_camera({write("no.png", "no picture")}, settings); },
       {"no.png", "no picture"});
 }
 
@@ -142,9 +142,9 @@ TEST(CameraCalibrationData, FitsADevicesTableWithin007Px) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path << "; set GLINT_TEST_DATA";
   const LensFit fit = fit_lens_to_table(path, 0);
   std::printf("  %d rays: rms %.4f px an axis, largest %.4f px\n", fit.pixels, fit.rms_px,
-              fit.most_px);
+              fit.error_max_px);
   EXPECT_LE(fit.rms_px, 0.07);
-  EXPECT_LE(fit.most_px, 0.3);
+  EXPECT_LE(fit.error_max_px, 0.3);
 }
 
 }  // namespace

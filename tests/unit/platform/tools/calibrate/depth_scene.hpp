@@ -14,7 +14,7 @@ struct DepthScene {
   double near_m = 0.3, far_m = 0.8;
   // Peak at 0.5 m; each blob's is a random part of it, from dim_part to 1.
   double peak = 20'000, dim_part = 0.15;
-  double falls = 2;  // exponent of the decrease of brightness with range
+  double peak_exponent = 2;  // exponent of the decrease of brightness with range
   double pixel_sigma_px = 0.1, range_sigma_m = 0.002;
   int frames = 300;
   int strays = 0;
@@ -28,9 +28,9 @@ inline Tool scene_tool() {
   return tool;
 }
 
-class SceneNumbers {
+class SceneRandom {
  public:
-  SceneNumbers(std::uint64_t seed, int frame)
+  SceneRandom(std::uint64_t seed, int frame)
       : key_{seed, sim::Stream::points, static_cast<std::uint64_t>(frame)} {}
   double within(double low, double high) {
     return low + (high - low) * sim::uniform(key_, next_++);
@@ -47,7 +47,7 @@ class SceneNumbers {
 };
 
 inline bool add_blob(const DepthScene& scene, const Camera& camera, const Vector3& centre,
-                     double behind_m, SceneNumbers& numbers, BlobFrame& frame) {
+                     double behind_m, SceneRandom& numbers, BlobFrame& frame) {
   const double right = numbers.normal(), down = numbers.normal(), away = numbers.normal();
   const double part = numbers.within(scene.dim_part, 1);
   const Result<Vector2> pixel = project(camera.model, centre);
@@ -56,14 +56,14 @@ inline bool add_blob(const DepthScene& scene, const Camera& camera, const Vector
   const Vector2 seen = pixel.value + scene.pixel_sigma_px * Vector2(right, down);
   const Result<LocalRays> rays = local_rays(camera.model, seen, k_ray_steps_max, steps);
   if (!rays) return false;
-  SeenBlob blob;
+  ObservedBlob blob;
   blob.rays = rays.value;
   const double surface = centre.norm() - behind_m;
-  blob.peak = std::floor(scene.peak * part * std::pow(0.5 / surface, scene.falls));
+  blob.peak = std::floor(scene.peak * part * std::pow(0.5 / surface, scene.peak_exponent));
   // The bias is a function of the measured range: range = surface + bias(range, peak).
   const DepthBias& bias = scene.bias;
   const double at_zero = surface + bias.offset_m - bias.per_metre * DepthBias::k_reference_m +
-                         bias.dim_m * DepthBias::k_reference_counts / blob.peak;
+                         bias.low_signal_m * DepthBias::k_reference_counts / blob.peak;
   blob.surface_range_m = at_zero / (1 - bias.per_metre) + scene.range_sigma_m * away;
   frame.blobs.push_back(blob);
   return true;
@@ -79,7 +79,7 @@ inline BlobSeries blobs_of(const DepthScene& scene) {
   for (int m = 0; m < tool.marker_count; ++m)
     mean += tool.markers_m[static_cast<std::size_t>(m)] / tool.marker_count;
   for (int f = 0; f < scene.frames; ++f) {
-    SceneNumbers numbers(scene.seed, f);
+    SceneRandom numbers(scene.seed, f);
     const double range = numbers.within(scene.near_m, scene.far_m);
     const Vector3 sight(numbers.within(-0.3, 0.3), numbers.within(-0.3, 0.3), 1);
     Pose pose{from_rotation_vector(0.5 * numbers.vector()), Vector3::Zero()};

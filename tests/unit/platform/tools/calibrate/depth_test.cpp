@@ -15,22 +15,24 @@ using test::DepthScene;
 
 DepthCalibration found_in(const DepthScene& scene, const DepthCalibrationSettings& settings = {}) {
   const Tool tool = test::scene_tool();
-  const SightingSeries seen = find_tool(test::blobs_of(scene), tool, {});
-  return calibrate_depth(seen.sightings, tool, settings, "scene.mcap");
+  const ObservationSeries seen = find_tool(test::blobs_of(scene), tool, {});
+  return calibrate_depth(seen.observations, tool, settings, "scene.mcap");
 }
 
-Vector3 values_of(const DepthBias& bias) { return {bias.offset_m, bias.per_metre, bias.dim_m}; }
+Vector3 values_of(const DepthBias& bias) {
+  return {bias.offset_m, bias.per_metre, bias.low_signal_m};
+}
 
 TEST(Depth, NamesTheMarkersAmongStraysThoughTheirRangesAreTooLong) {
   const DepthScene scene{.frames = 100, .strays = 4};
-  const SightingSeries seen = find_tool(test::blobs_of(scene), test::scene_tool(), {});
+  const ObservationSeries seen = find_tool(test::blobs_of(scene), test::scene_tool(), {});
   EXPECT_EQ(seen.frames, 100);
-  EXPECT_GE(seen.sightings.size(), 90u);
+  EXPECT_GE(seen.observations.size(), 90u);
   int wrong = 0;
-  for (const Sighting& sighting : seen.sightings) {
-    for (const SeenMarker& marker : sighting.markers) {
+  for (const ToolObservation& observation : seen.observations) {
+    for (const ObservedMarker& marker : observation.markers) {
       // The scene adds the markers in the tool's order, so a blob's index is its marker's.
-      const auto f = static_cast<std::size_t>(sighting.pose.time.nanoseconds / 22'000'000);
+      const auto f = static_cast<std::size_t>(observation.pose.time.nanoseconds / 22'000'000);
       const BlobFrame frame = test::blobs_of(scene).frames[f];
       const auto m = static_cast<std::size_t>(marker.marker);
       wrong +=
@@ -47,7 +49,7 @@ TEST(Depth, FindsTheBiasWithoutNoise) {
   const DepthCalibration found = found_in(scene);
   EXPECT_NEAR(found.bias.offset_m, scene.bias.offset_m, 1e-6);
   EXPECT_NEAR(found.bias.per_metre, scene.bias.per_metre, 1e-5);
-  EXPECT_NEAR(found.bias.dim_m, scene.bias.dim_m, 1e-5);
+  EXPECT_NEAR(found.bias.low_signal_m, scene.bias.low_signal_m, 1e-5);
 }
 
 TEST(Depth, FindsTheBiasAndTheNoiseAndWhatItTakesOff) {
@@ -83,10 +85,11 @@ TEST(Depth, KnowsHowSureItIs) {
 TEST(Depth, CountsWhatTheToolsPlacesLeaveOfItsSize) {
   const DepthScene scene{.frames = 150};
   Tool drawn = test::scene_tool();
-  const SightingSeries seen = find_tool(test::blobs_of(scene), drawn, {});
-  const Matrix3 exact = calibrate_depth(seen.sightings, drawn, {}, "scene.mcap").covariance;
+  const ObservationSeries seen = find_tool(test::blobs_of(scene), drawn, {});
+  const Matrix3 exact = calibrate_depth(seen.observations, drawn, {}, "scene.mcap").covariance;
   drawn.marker_sigma_m = 0.0003;
-  const Matrix3 more = calibrate_depth(seen.sightings, drawn, {}, "scene.mcap").covariance - exact;
+  const Matrix3 more =
+      calibrate_depth(seen.observations, drawn, {}, "scene.mcap").covariance - exact;
   double spread_m2 = 0;
   for (int i = 0; i < drawn.marker_count; ++i)
     spread_m2 += (drawn.markers_m[static_cast<std::size_t>(i)] - drawn.middle_m()).squaredNorm();
@@ -99,11 +102,11 @@ TEST(Depth, CountsWhatTheToolsPlacesLeaveOfItsSize) {
 
 TEST(Depth, LeavesOutRangesThatFitNothing) {
   const DepthScene scene{.frames = 300};
-  SightingSeries seen = find_tool(test::blobs_of(scene), test::scene_tool(), {});
-  for (std::size_t i = 0; i < seen.sightings.size(); i += 3)
-    seen.sightings[i].markers[1].blob.surface_range_m += 0.05;
+  ObservationSeries seen = find_tool(test::blobs_of(scene), test::scene_tool(), {});
+  for (std::size_t i = 0; i < seen.observations.size(); i += 3)
+    seen.observations[i].markers[1].blob.surface_range_m += 0.05;
   const DepthCalibration found =
-      calibrate_depth(seen.sightings, test::scene_tool(), {}, "wild.mcap");
+      calibrate_depth(seen.observations, test::scene_tool(), {}, "wild.mcap");
   EXPECT_GE(found.outliers, 95);
   EXPECT_LE(found.outliers, 130);
   const Vector3 off = values_of(found.bias) - values_of(scene.bias);
@@ -114,11 +117,11 @@ TEST(Depth, SaysWhichPartTheRunLeavesOpen) {
   const DepthScene near{.near_m = 0.49, .far_m = 0.5};
   test::expect_input_error([&] { (void)found_in(near); },
                            {"scene.mcap", "mm_per_m stays open", "towards the camera and away"});
-  const DepthScene even{.dim_part = 0.9, .falls = 0};
+  const DepthScene even{.dim_part = 0.9, .peak_exponent = 0};
   test::expect_input_error([&] { (void)found_in(even); }, {"dim_mm stays open", "--no-brightness"});
   DepthCalibrationSettings by_range;  // without this term the offset includes the dimness bias
   by_range.brightness = Brightness::left_out;
-  EXPECT_EQ(found_in(even, by_range).bias.dim_m, 0);
+  EXPECT_EQ(found_in(even, by_range).bias.low_signal_m, 0);
   const DepthScene few{.frames = 20};
   test::expect_input_error([&] { (void)found_in(few); }, {"in 20 frames", "at least 50"});
 }
@@ -126,18 +129,19 @@ TEST(Depth, SaysWhichPartTheRunLeavesOpen) {
 // If brightness depends on range alone, the slope and the dimness term are not separable.
 TEST(Depth, SaysWhenBrightnessFollowsRange) {
   const DepthScene tied{
-      .peak = 3000, .dim_part = 0.999, .falls = 1, .range_sigma_m = 0.004, .frames = 60};
+      .peak = 3000, .dim_part = 0.999, .peak_exponent = 1, .range_sigma_m = 0.004, .frames = 60};
   test::expect_input_error([&] { (void)found_in(tied); },
                            {"dim_mm stays open", "brightness follows range", "dim markers near"});
 }
 
 TEST(Depth, RefusesAnotherTool) {
-  SightingSeries seen = find_tool(test::blobs_of({}), test::scene_tool(), {});
+  ObservationSeries seen = find_tool(test::blobs_of({}), test::scene_tool(), {});
   Tool larger = test::scene_tool();
   for (int m = 0; m < larger.marker_count; m += 2)
     larger.markers_m[static_cast<std::size_t>(m)] *= 1.2;
-  test::expect_input_error([&] { (void)calibrate_depth(seen.sightings, larger, {}, "other.mcap"); },
-                           {"other.mcap", "do not fit", "tool's file"});
+  test::expect_input_error(
+      [&] { (void)calibrate_depth(seen.observations, larger, {}, "other.mcap"); },
+      {"other.mcap", "do not fit", "tool's file"});
 }
 
 TEST(BlobTable, IsReadAndRefusedWithItsLine) {

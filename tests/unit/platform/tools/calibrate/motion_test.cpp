@@ -15,7 +15,7 @@ namespace glint {
 namespace {
 
 // A hand simulated by exact steps of the motion model at 500 Hz, measured with noise.
-struct Hand {
+struct SimulatedHand {
   MotionSettings motion{2.0, 3.0, 300, 12};
   MeasuredNoise noise{0.0005, 0.004};
   double seconds = 30;
@@ -35,9 +35,9 @@ class SingerAxis {
     const double x = sim::gaussian(key_, next_), y = sim::gaussian(key_, next_ + 1),
                  z = sim::gaussian(key_, next_ + 2);
     next_ += 3;
-    Vector3 next(state_[0] + step_.seconds * state_[1] + step_.place_by_acceleration * state_[2],
-                 state_[1] + step_.speed_by_acceleration * state_[2],
-                 step_.acceleration_kept * state_[2]);
+    Vector3 next(state_[0] + step_.seconds * state_[1] + step_.position_by_acceleration * state_[2],
+                 state_[1] + step_.velocity_by_acceleration * state_[2],
+                 step_.acceleration_decay * state_[2]);
     next += root_ * Vector3(x, y, z);
     state_ = next;
     return state_;
@@ -51,7 +51,7 @@ class SingerAxis {
   Vector3 state_;
 };
 
-Trajectory moved_by(const Hand& hand) {
+Trajectory moved_by(const SimulatedHand& hand) {
   std::vector<SingerAxis> shift, turn;
   for (std::uint64_t axis = 0; axis < 3; ++axis) {
     shift.emplace_back(hand.motion.linear_noise_m2_s5, hand.motion.linear_damping_1_s,
@@ -94,30 +94,30 @@ MotionUnknowns unknowns_of(const MotionSettings& motion, MotionPart part) {
 constexpr MotionPart k_parts[] = {MotionPart::shift, MotionPart::rotation};
 
 // Log likelihood from the innovations of the kernel's own filter.
-double kernel_likelihood(std::span<const StampedPose> measured, MotionPart part,
+double kernel_likelihood(std::span<const TimedPose> measured, MotionPart part,
                          const MotionSettings& motion, const MeasuredNoise& noise) {
   Matrix6 covariance = Matrix6::Zero();
   const double p = noise.position_sigma_m * noise.position_sigma_m;
   const double r = noise.rotation_sigma_rad * noise.rotation_sigma_rad;
   covariance.diagonal() << p, p, p, r, r, r;
   const int block = part == MotionPart::shift ? k_position : k_rotation;
-  MotionState state = start_motion({measured[0].time, measured[0].pose, covariance}, motion);
+  MotionState state =
+      initial_motion_state({measured[0].time, measured[0].pose, covariance}, motion);
   double sum = 0;
-  for (const StampedPose& sample : measured.subspan(1)) {
+  for (const TimedPose& sample : measured.subspan(1)) {
     propagate(state, sample.time, motion, {});
     const Matrix3 s = state.covariance.block<3, 3>(block, block) +
                       (part == MotionPart::shift ? p : r) * Matrix3::Identity();
     const Correction correction = correct_by_pose(state, {sample.time, sample.pose, covariance});
-    sum -= 0.5 * ((part == MotionPart::shift ? correction.linear_chi_square
-                                             : correction.angular_chi_square) +
+    sum -= 0.5 * ((part == MotionPart::shift ? correction.linear_nis : correction.angular_nis) +
                   std::log(s.determinant()) + 3 * std::log(2 * 3.14159265358979323846));
   }
   return sum;
 }
 
 TEST(MotionLikelihood, IsThatOfTheKernelsFilter) {
-  const Hand hand{.seconds = 4};
-  const std::vector<StampedPose> measured = moved_by(hand).samples;
+  const SimulatedHand hand{.seconds = 4};
+  const std::vector<TimedPose> measured = moved_by(hand).samples;
   for (const MotionPart part : k_parts) {
     const Likelihood found =
         likelihood_of(measured, part, unknowns_of(hand.motion, part), {hand.noise, {}, 0.5});
@@ -128,8 +128,8 @@ TEST(MotionLikelihood, IsThatOfTheKernelsFilter) {
 }
 
 TEST(MotionLikelihood, HasTheGradientThatDifferencesHave) {
-  const Hand hand{.seconds = 3};
-  const std::vector<StampedPose> measured = moved_by(hand).samples;
+  const SimulatedHand hand{.seconds = 3};
+  const std::vector<TimedPose> measured = moved_by(hand).samples;
   const LikelihoodSettings settings{hand.noise, {}, 0.5};
   for (const MotionPart part : k_parts) {
     // Off the maximum of the likelihood, where the gradient vanishes.
@@ -155,8 +155,8 @@ TEST(MotionLikelihood, HasTheGradientThatDifferencesHave) {
 }
 
 TEST(MotionLikelihood, StartsAnewAfterAGap) {
-  const Hand hand{.seconds = 2};
-  std::vector<StampedPose> measured = moved_by(hand).samples;
+  const SimulatedHand hand{.seconds = 2};
+  std::vector<TimedPose> measured = moved_by(hand).samples;
   const int before = static_cast<int>(measured.size());
   measured.erase(measured.begin() + 30, measured.begin() + 60);
   const Likelihood found =
@@ -165,13 +165,13 @@ TEST(MotionLikelihood, StartsAnewAfterAGap) {
 }
 
 // Mean NEES of the two unknowns over `runs` runs.
-double errors_in_sigmas(MotionPart part, int runs, double seconds) {
+double mean_nees(MotionPart part, int runs, double seconds) {
   double sum = 0;
   for (int run = 0; run < runs; ++run) {
-    const Hand hand{.seconds = seconds, .seed = static_cast<std::uint64_t>(run + 1)};
+    const SimulatedHand hand{.seconds = seconds, .seed = static_cast<std::uint64_t>(run + 1)};
     const MotionUnknowns truth = unknowns_of(hand.motion, part);
-    const MotionFit fit = most_likely({moved_by(hand).samples}, part, unknowns_of({}, part),
-                                      {hand.noise, {}, 0.5}, {});
+    const MotionFit fit = maximise_likelihood({moved_by(hand).samples}, part, unknowns_of({}, part),
+                                              {hand.noise, {}, 0.5}, {});
     EXPECT_TRUE(fit.determined);
     const Vector2 off(std::log(fit.unknowns.noise / truth.noise),
                       std::log(fit.unknowns.damping / truth.damping));
@@ -184,15 +184,15 @@ double errors_in_sigmas(MotionPart part, int runs, double seconds) {
 
 // Tolerances are 2.5 standard deviations of the mean NEES.
 TEST(MotionFit, FindsAShiftsNoiseAndDampingAndKnowsHowSureItIs) {
-  EXPECT_NEAR(errors_in_sigmas(MotionPart::shift, 8, 8), 1, 0.9);
+  EXPECT_NEAR(mean_nees(MotionPart::shift, 8, 8), 1, 0.9);
 }
 
 TEST(MotionFit, FindsARotationsNoiseAndDampingAndKnowsHowSureItIs) {
-  EXPECT_NEAR(errors_in_sigmas(MotionPart::rotation, 3, 6), 1, 1.4);
+  EXPECT_NEAR(mean_nees(MotionPart::rotation, 3, 6), 1, 1.4);
 }
 
 TEST(Motion, IsMoreLikelyThanTheBuiltInOneOnWhatWasHeldOut) {
-  const Hand hand{.motion = {0.3, 1.5, 60, 10}, .seconds = 18};
+  const SimulatedHand hand{.motion = {0.3, 1.5, 60, 10}, .seconds = 18};
   const Trajectory recording = moved_by(hand);
   MotionCalibrationSettings settings;
   settings.noise = hand.noise;
@@ -201,7 +201,7 @@ TEST(Motion, IsMoreLikelyThanTheBuiltInOneOnWhatWasHeldOut) {
   EXPECT_GT(found.found.log_likelihood, found.built_in.log_likelihood + 0.05);
   EXPECT_LT(found.found.at_25_ms.position_rms_m, 1.02 * found.built_in.at_25_ms.position_rms_m);
   EXPECT_GT(found.found.at_25_ms.n, 150);
-  EXPECT_EQ(static_cast<int>(found.misses_m.size()), found.found.at_25_ms.n);
+  EXPECT_EQ(static_cast<int>(found.errors_m.size()), found.found.at_25_ms.n);
   EXPECT_EQ(found.motion.start_speed_m_s, MotionSettings{}.start_speed_m_s);
 }
 
@@ -210,14 +210,14 @@ TEST(Motion, SaysWhatARecordingLeavesOpen) {
   const Trajectory few = moved_by({.seconds = 5});
   test::expect_input_error([&] { (void)calibrate_motion(std::span(&few, 1), settings, "few.tum"); },
                            {"few.tum", "expected at least 450", "record for longer"});
-  const Hand still{.motion = {1e-12, 3, 1e-9, 12}, .seconds = 12};
+  const SimulatedHand still{.motion = {1e-12, 3, 1e-9, 12}, .seconds = 12};
   Trajectory rest = moved_by(still);
   settings.noise = still.noise;
   test::expect_input_error(
       [&] { (void)calibrate_motion(std::span(&rest, 1), settings, "rest.tum"); },
       {"rest.tum", "leaves the shift's", "open", "stand out", "starts, stops and turns"});
   // Translation only: the rotation is unobservable.
-  const Hand hand{.seconds = 12};
+  const SimulatedHand hand{.seconds = 12};
   Trajectory slid = moved_by(hand);
   for (std::size_t i = 0; i < slid.samples.size(); ++i)
     slid.samples[i].pose.rotation = from_rotation_vector(

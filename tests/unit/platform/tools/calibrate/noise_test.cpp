@@ -16,12 +16,12 @@ const AxisNoise k_position{0.0001, 0.0003, 0.0005}, k_rotation{0.001, 0.003, 0.0
 constexpr CorrelationTimes k_times{0.5, 20};
 
 // Poses of a static tool every 0.2 s, with this noise on all axes.
-std::vector<StampedPose> rest(int frames, std::uint64_t seed) {
+std::vector<TimedPose> rest(int frames, std::uint64_t seed) {
   const sim::RandomKey key{seed, sim::Stream::reference};
   const double keep_fast = std::exp(-0.2 / k_times.fast_s);
   const double keep_slow = std::exp(-0.2 / k_times.slow_s);
   Vector6 fast = Vector6::Zero(), slow = Vector6::Zero();
-  std::vector<StampedPose> poses;
+  std::vector<TimedPose> poses;
   std::uint64_t drawn = 0;
   for (int frame = 0; frame < frames; ++frame) {
     Vector6 error;
@@ -63,20 +63,20 @@ TEST(Noise, IsFoundByItsAllanDeviation) {
 }
 
 TEST(Noise, RefusesWhatIsNoRest) {
-  const std::vector<StampedPose> few = rest(50, 1);
+  const std::vector<TimedPose> few = rest(50, 1);
   test::expect_input_error([&] { (void)calibrate_noise(few, "few.tum"); }, {"few.tum: 50 poses"});
-  std::vector<StampedPose> moved = rest(200, 1);
+  std::vector<TimedPose> moved = rest(200, 1);
   moved[150].pose.translation.x() += 0.05;
   test::expect_input_error([&] { (void)calibrate_noise(moved, "moved.tum"); },
                            {"moved.tum: the tool moved by 5"});
-  std::vector<StampedPose> alike = rest(200, 1);
-  for (StampedPose& pose : alike) pose.pose = alike.front().pose;
+  std::vector<TimedPose> alike = rest(200, 1);
+  for (TimedPose& pose : alike) pose.pose = alike.front().pose;
   test::expect_input_error([&] { (void)calibrate_noise(alike, "alike.tum"); },
                            {"poses are all alike"});
 }
 
 TEST(Noise, OfTwoBodiesIsThatOfTheirRelativePose) {
-  std::vector<StampedPose> tool = rest(20, 1), body;
+  std::vector<TimedPose> tool = rest(20, 1), body;
   const Pose drift{from_rotation_vector({0, 0, 0.3}), {1, 2, 3}};
   for (std::size_t i = 0; i < tool.size(); ++i) {
     const Pose at{Quaternion::Identity(), {0.01 * static_cast<double>(i), 0, 0}};
@@ -84,9 +84,9 @@ TEST(Noise, OfTwoBodiesIsThatOfTheirRelativePose) {
     tool[i].pose = drift * at * tool[i].pose;
   }
   body.erase(body.begin() + 7);
-  const std::vector<StampedPose> relative = relative_poses(tool, body, milliseconds(20));
+  const std::vector<TimedPose> relative = relative_poses(tool, body, milliseconds(20));
   ASSERT_EQ(relative.size(), 19u);
-  for (const StampedPose& pose : relative)
+  for (const TimedPose& pose : relative)
     EXPECT_LT((pose.pose.translation - Vector3(0.1, 0, 0.5)).norm(), 0.005);
 }
 
@@ -103,13 +103,13 @@ TEST(Noise, GivesTheErrorsOfEachMarker) {
     rays.push_back(local_rays(cell.camera.model, project(cell.camera.model, point).value,
                               k_ray_steps_max, steps)
                        .value);
-    markers.push_back(weigh_marker(tool.markers_m[static_cast<std::size_t>(i)], rays.back(),
-                                   point.norm(), {0.01, 0, 0.01, 0.0015 * 0.0015})
+    markers.push_back(whiten_marker(tool.markers_m[static_cast<std::size_t>(i)], rays.back(),
+                                    point.norm(), {0.01, 0, 0.01, 0.0015 * 0.0015})
                           .value);
   }
   CameraUncertainty truth = k_exact_camera;
-  truth.slow_range_m = 0.0012;
-  truth.slow_centroid_px = 0.08;
+  truth.correlated_range_m = 0.0012;
+  truth.correlated_centroid_px = 0.08;
   truth.fast_share = 0.3;
   const CorrelatedErrors errors =
       systematic_covariance(markers, rays, T_camera_tool, tool.middle_m(), truth, 0)
@@ -120,17 +120,17 @@ TEST(Noise, GivesTheErrorsOfEachMarker) {
                                                std::sqrt(errors.slow(k, k))};
   }
   const CameraUncertainty found = marker_errors_of(noise, cell, tool, T_camera_tool);
-  EXPECT_NEAR(found.slow_range_m, 0.0012, 1e-6);
-  EXPECT_NEAR(found.slow_centroid_px, 0.08, 1e-4);
+  EXPECT_NEAR(found.correlated_range_m, 0.0012, 1e-6);
+  EXPECT_NEAR(found.correlated_centroid_px, 0.08, 1e-4);
   EXPECT_NEAR(found.fast_share, 0.3, 1e-9);
   EXPECT_EQ(found.principal_point_px, cell.camera.uncertainty.principal_point_px);
   // White noise alone gives marker errors of zero, and no NaN.
   const CameraUncertainty white = marker_errors_of({}, cell, tool, T_camera_tool);
-  EXPECT_EQ(white.slow_range_m, 0);
-  EXPECT_EQ(white.slow_centroid_px, 0);
+  EXPECT_EQ(white.correlated_range_m, 0);
+  EXPECT_EQ(white.correlated_centroid_px, 0);
   EXPECT_EQ(white.fast_share, cell.camera.uncertainty.fast_share);
   noise.axes[2] = {0.001, 0, 0};
-  EXPECT_TRUE(std::isfinite(marker_errors_of(noise, cell, tool, T_camera_tool).slow_range_m));
+  EXPECT_TRUE(std::isfinite(marker_errors_of(noise, cell, tool, T_camera_tool).correlated_range_m));
 }
 
 }  // namespace

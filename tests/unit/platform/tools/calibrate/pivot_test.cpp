@@ -10,20 +10,20 @@
 namespace glint {
 namespace {
 
-using test::turned_poses;
-using test::TurnSettings;
+using test::pivot_poses;
+using test::PivotMotion;
 
 TEST(Pivot, FindsTheTipOfExactPoses) {
-  const TurnSettings turn;
-  const PivotResult result = calibrate_pivot(turned_poses(turn, 50), {}, "exact");
+  const PivotMotion turn;
+  const PivotResult result = calibrate_pivot(pivot_poses(turn, 50), {}, "exact");
   EXPECT_LT((result.tip_m - turn.tip_m).norm(), 1e-9);
   EXPECT_LT((result.post_m - turn.post_m).norm(), 1e-9);
   EXPECT_EQ(result.outliers, 0);
 }
 
 TEST(Pivot, LeavesOutWildPoses) {
-  const TurnSettings turn{.position_sigma_m = 0.0003, .rotation_sigma_rad = 0.002};
-  std::vector<StampedPose> poses = turned_poses(turn, 300);
+  const PivotMotion turn{.position_sigma_m = 0.0003, .rotation_sigma_rad = 0.002};
+  std::vector<TimedPose> poses = pivot_poses(turn, 300);
   for (std::size_t i = 0; i < poses.size(); i += 5) {  // every fifth pose is of another object
     poses[i].pose.translation += Vector3(0.3, -0.1, 0.02 * static_cast<double>(i % 7));
   }
@@ -39,10 +39,10 @@ TEST(Pivot, KnowsHowSureItIs) {
   double sum = 0;
   constexpr int k_runs = 60;
   for (int run = 0; run < k_runs; ++run) {
-    const TurnSettings turn{.position_sigma_m = 0.0005,
-                            .rotation_sigma_rad = 0.006,
-                            .seed = static_cast<std::uint64_t>(run + 1)};
-    const PivotResult result = calibrate_pivot(turned_poses(turn, 200), {}, "noise");
+    const PivotMotion turn{.position_sigma_m = 0.0005,
+                           .rotation_sigma_rad = 0.006,
+                           .seed = static_cast<std::uint64_t>(run + 1)};
+    const PivotResult result = calibrate_pivot(pivot_poses(turn, 200), {}, "noise");
     const Vector3 off = result.tip_m - turn.tip_m;
     sum += off.dot(result.tip_covariance_m2.inverse() * off);
   }
@@ -51,11 +51,11 @@ TEST(Pivot, KnowsHowSureItIs) {
 
 // A relative scale error of the positions moves the tip by the same part of its lever arm.
 TEST(Pivot, CountsAScaleAlongTheArm) {
-  const TurnSettings turn;
+  const PivotMotion turn;
   PivotSettings settings;
-  const PivotResult exact = calibrate_pivot(turned_poses(turn, 200), settings, "exact");
+  const PivotResult exact = calibrate_pivot(pivot_poses(turn, 200), settings, "exact");
   settings.scale_sigma = 0.01;
-  const PivotResult scaled = calibrate_pivot(turned_poses(turn, 200), settings, "scaled");
+  const PivotResult scaled = calibrate_pivot(pivot_poses(turn, 200), settings, "scaled");
   const Vector3 arm = exact.tip_m - settings.centre_m;
   const Matrix3 more = scaled.tip_covariance_m2 - exact.tip_covariance_m2;
   EXPECT_NEAR(arm.normalized().dot(more * arm.normalized()), 1e-4 * arm.squaredNorm(), 1e-9);
@@ -65,28 +65,28 @@ TEST(Pivot, CountsAScaleAlongTheArm) {
 TEST(Pivot, IsNotDrawnTowardsTheCentreByNoisyRotations) {
   Vector3 mean = Vector3::Zero();
   constexpr int k_runs = 40;
-  TurnSettings turn{
+  PivotMotion turn{
       .tilt_rms_rad = {0.2, 0.2, 0.2}, .position_sigma_m = 0.0005, .rotation_sigma_rad = 0.02};
   for (int run = 0; run < k_runs; ++run) {
     turn.seed = static_cast<std::uint64_t>(run + 1);
-    mean += calibrate_pivot(turned_poses(turn, 300), {}, "noise").tip_m / k_runs;
+    mean += calibrate_pivot(pivot_poses(turn, 300), {}, "noise").tip_m / k_runs;
   }
   // Plain least squares is biased 1.5 mm towards the centre (0.02^2 / 0.2^2 of 155 mm).
   EXPECT_NEAR(mean.norm() - turn.tip_m.norm(), 0, 0.0004);
 }
 
 TEST(Pivot, TakesPosesThatRepeatForOne) {
-  TurnSettings turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.004};
-  const double once = calibrate_pivot(turned_poses(turn, 200), {}, "once").tip_sigma_m;
+  PivotMotion turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.004};
+  const double once = calibrate_pivot(pivot_poses(turn, 200), {}, "once").tip_sigma_m;
   turn.repeats = 5;
-  const double repeated = calibrate_pivot(turned_poses(turn, 1000), {}, "repeated").tip_sigma_m;
+  const double repeated = calibrate_pivot(pivot_poses(turn, 1000), {}, "repeated").tip_sigma_m;
   EXPECT_GT(repeated, 0.9 * once);
   EXPECT_LT(repeated, 2.0 * once);
 }
 
 TEST(Pivot, TrustsFewPosesAlikeButNotAWildOne) {
-  const TurnSettings turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.002};
-  std::vector<StampedPose> poses = turned_poses(turn, 20);
+  const PivotMotion turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.002};
+  std::vector<TimedPose> poses = pivot_poses(turn, 20);
   EXPECT_EQ(calibrate_pivot(poses, {}, "few").outliers, 0);
   poses[7].pose.translation.x() += 0.1;
   const PivotResult result = calibrate_pivot(poses, {}, "few");
@@ -96,29 +96,29 @@ TEST(Pivot, TrustsFewPosesAlikeButNotAWildOne) {
 }
 
 TEST(Pivot, StopsAsSoonAsTheTipIsKnownWellEnough) {
-  const TurnSettings turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.002};
+  const PivotMotion turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.002};
   PivotSettings settings;
   settings.stop_sigma_m = 0.0004;
-  const PivotResult result = calibrate_pivot(turned_poses(turn, 2000), settings, "stops");
+  const PivotResult result = calibrate_pivot(pivot_poses(turn, 2000), settings, "stops");
   EXPECT_TRUE(result.sigma_reached);
   EXPECT_LT(result.poses_used, 500);
   EXPECT_LT(result.tip_sigma_m, 0.0004);
   settings.stop_sigma_m = 1e-7;
-  EXPECT_FALSE(calibrate_pivot(turned_poses(turn, 200), settings, "never").sigma_reached);
+  EXPECT_FALSE(calibrate_pivot(pivot_poses(turn, 200), settings, "never").sigma_reached);
 }
 
 TEST(Pivot, NamesTheDirectionThatAToolTurnedAboutOneAxisLeavesOpen) {
-  const TurnSettings turn{.tilt_rms_rad = {0, 0, 0.5}, .rotation_sigma_rad = 0.003};
-  test::expect_input_error([&] { (void)calibrate_pivot(turned_poses(turn, 200), {}, "one.tum"); },
+  const PivotMotion turn{.tilt_rms_rad = {0, 0, 0.5}, .rotation_sigma_rad = 0.003};
+  test::expect_input_error([&] { (void)calibrate_pivot(pivot_poses(turn, 200), {}, "one.tum"); },
                            {"one.tum", "1.00]", "stays open", "tilt the tool"});
 }
 
 TEST(Pivot, RefusesTooFewPosesAndATipThatWanders) {
-  const TurnSettings turn;
-  test::expect_input_error([&] { (void)calibrate_pivot(turned_poses(turn, 11), {}, "few.tum"); },
+  const PivotMotion turn;
+  test::expect_input_error([&] { (void)calibrate_pivot(pivot_poses(turn, 11), {}, "few.tum"); },
                            {"few.tum", "11 poses", "at least 12"});
-  const TurnSettings wander{.position_sigma_m = 0.1};
-  test::expect_input_error([&] { (void)calibrate_pivot(turned_poses(wander, 100), {}, "far.tum"); },
+  const PivotMotion wander{.position_sigma_m = 0.1};
+  test::expect_input_error([&] { (void)calibrate_pivot(pivot_poses(wander, 100), {}, "far.tum"); },
                            {"far.tum", "stand still"});
 }
 

@@ -15,12 +15,12 @@ const Vector3 k_axis = Vector3(0.05, -0.08, 1).normalized();
 const Vector3 k_foot(0.004, -0.003, -0.00044);  // across the axis
 
 // Poses of a tool that rolls by a full turn in both directions and slides along its axis.
-std::vector<StampedPose> rolled_poses(int count, double noise_rad,
-                                      double turn_rad = 2 * std::numbers::pi,
-                                      std::uint64_t seed = 1) {
+std::vector<TimedPose> rolled_poses(int count, double noise_rad,
+                                    double turn_rad = 2 * std::numbers::pi,
+                                    std::uint64_t seed = 1) {
   const sim::RandomKey key{seed, sim::Stream::hand, 3};
   const Quaternion held = from_rotation_vector({0.4, 0.7, -0.2});
-  std::vector<StampedPose> poses;
+  std::vector<TimedPose> poses;
   for (int i = 0; i < count; ++i) {
     const auto index = static_cast<std::uint64_t>(i);
     const double angle = turn_rad * (sim::uniform(key, index) - 0.5);
@@ -62,7 +62,7 @@ TEST(Spin, KnowsHowSureItIs) {
 }
 
 TEST(Spin, LeavesOutWildPoses) {
-  std::vector<StampedPose> poses = rolled_poses(200, 0.003);
+  std::vector<TimedPose> poses = rolled_poses(200, 0.003);
   for (std::size_t i = 0; i < poses.size(); i += 6) {
     poses[i].pose.rotation = from_rotation_vector({1, 0.3 * static_cast<double>(i % 5), 0.2});
   }
@@ -85,7 +85,7 @@ TEST(Spin, RefusesATurnThatIsTooSmallOrAboutManyAxes) {
       {"small.tum", "turned by only", "roll it"});
   test::expect_input_error(
       [] {
-        (void)calibrate_spin(test::turned_poses({.tilt_rms_rad = {0.5, 0.5, 0.5}}, 100), {},
+        (void)calibrate_spin(test::pivot_poses({.tilt_rms_rad = {0.5, 0.5, 0.5}}, 100), {},
                              "all.tum");
       },
       {"all.tum", "no direction", "one axis only"});

@@ -84,7 +84,7 @@ TEST(ToolGeometry, FindsTheMarkersDespiteFlickerAndStrays) {
   const ToolGeometry found = calibrate_tool(recorded({}), {}, "flicker.csv");
   EXPECT_LT(error_of(found.markers_m, k_four), 0.00006);
   EXPECT_NEAR(found.noise_m, 0.0003, 0.00002);
-  for (const int seen : found.seen) EXPECT_NEAR(seen, 240 * 0.8, 60);
+  for (const int count : found.frame_counts) EXPECT_NEAR(count, 240 * 0.8, 60);
 }
 
 TEST(ToolGeometry, KnowsHowSureItIs) {
@@ -111,14 +111,14 @@ TEST(ToolGeometry, IsLessSureOfSlowErrors) {
 TEST(ToolGeometry, CountsWhatSlowErrorsOfTheRangesLeave) {
   const std::vector<PointFrame> frames{{Time{}, {}}, {Time{40'000'000'000}, {}}};
   Camera camera;
-  camera.uncertainty.slow_range_m = 0.001;
+  camera.uncertainty.correlated_range_m = 0.001;
   camera.uncertainty.fast_share = 0;
   camera.correlation.slow_s = 1e5;
   EXPECT_NEAR(slow_range_of_mean(frames, camera), 0.001, 1e-6);
   camera.correlation.slow_s = 0.2;
   EXPECT_NEAR(slow_range_of_mean(frames, camera), 0.001 * std::sqrt(2 * 0.2 / 40), 1e-6);
   ToolGeometrySettings settings;
-  settings.slow_range_m = 0.0004;
+  settings.correlated_range_m = 0.0004;
   const ToolGeometry plain = calibrate_tool(recorded({}), {}, "plain.csv"),
                      stated = calibrate_tool(recorded({}), settings, "stated.csv");
   for (std::size_t i = 0; i < k_four.size(); ++i)

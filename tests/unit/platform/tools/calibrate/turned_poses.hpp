@@ -8,7 +8,7 @@
 
 namespace glint::test {
 
-struct TurnSettings {
+struct PivotMotion {
   Vector3 tip_m{0.012, -0.034, 0.151};    // tool frame
   Vector3 post_m{0.1, -0.2, 0.5};         // tracker frame
   Vector3 tilt_rms_rad{0.35, 0.35, 0.3};  // about the tool's axes
@@ -19,12 +19,12 @@ struct TurnSettings {
   std::uint64_t seed = 1;
 };
 
-inline sim::RandomKey turn_key(const TurnSettings& settings, std::uint64_t what) {
+inline sim::RandomKey turn_key(const PivotMotion& settings, std::uint64_t what) {
   return {settings.seed, sim::Stream::hand, what};
 }
 
-inline std::vector<StampedPose> turned_poses(const TurnSettings& settings, int count) {
-  std::vector<StampedPose> poses;
+inline std::vector<TimedPose> pivot_poses(const PivotMotion& settings, int count) {
+  std::vector<TimedPose> poses;
   for (int i = 0; i < count; ++i) {
     const auto index = static_cast<std::uint64_t>(i / settings.repeats);
     const Vector3 tilt = sim::gaussian_vector(turn_key(settings, 0), index);

@@ -93,22 +93,22 @@ TEST(CompressedCloud, ComesBackAsItWasPacked) {
 
 TEST(CompressedCloud, IsRefusedByNameWhereItsLengthsLie) {
   const TemporaryFolder folder;
-  const auto expect_complaint = [&](const std::string& bytes, const std::string& what) {
-    const std::string complaint =
-        complaint_of([&] { (void)read_cloud(folder.write("a.pcd", bytes)); });
-    EXPECT_NE(complaint.find("a.pcd:line 6: "), std::string::npos) << complaint;
-    EXPECT_NE(complaint.find(what), std::string::npos) << complaint;
+  const auto expect_error = [&](const std::string& bytes, const std::string& what) {
+    const std::string message =
+        error_message_of([&] { (void)read_cloud(folder.write("a.pcd", bytes)); });
+    EXPECT_NE(message.find("a.pcd:line 6: "), std::string::npos) << message;
+    EXPECT_NE(message.find(what), std::string::npos) << message;
   };
   const std::string lzf = packed(std::string(2 * 21, 'a'));
-  expect_complaint(head(2), "0 bytes behind the header; expected two sizes");
-  expect_complaint(head(2) + "1234567", "7 bytes behind the header");
-  expect_complaint(head(2) + body(lzf.size() + 1, 42, lzf), "compressed bytes; expected");
-  expect_complaint(head(2) + body(0xffffffff, 42, lzf), "expected 4294967295");
-  expect_complaint(head(2) + body(lzf.size(), 43, lzf), "unpack to 43; expected 2 points of 21");
-  expect_complaint(head(3) + body(lzf.size(), 63, lzf), "do not unpack");
-  expect_complaint(head(2) + body(lzf.size() - 1, 42, lzf), "do not unpack");
+  expect_error(head(2), "0 bytes behind the header; expected two sizes");
+  expect_error(head(2) + "1234567", "7 bytes behind the header");
+  expect_error(head(2) + body(lzf.size() + 1, 42, lzf), "compressed bytes; expected");
+  expect_error(head(2) + body(0xffffffff, 42, lzf), "expected 4294967295");
+  expect_error(head(2) + body(lzf.size(), 43, lzf), "unpack to 43; expected 2 points of 21");
+  expect_error(head(3) + body(lzf.size(), 63, lzf), "do not unpack");
+  expect_error(head(2) + body(lzf.size() - 1, 42, lzf), "do not unpack");
   // 16 million points and their full size, in a few bytes: the reader reserves no memory.
-  expect_complaint(head(16'000'000) + body(lzf.size(), 336'000'000, lzf), "unpack to 336000000");
+  expect_error(head(16'000'000) + body(lzf.size(), 336'000'000, lzf), "unpack to 336000000");
 }
 
 // Every truncation and every changed byte either unpacks to the stated size or is refused. No case

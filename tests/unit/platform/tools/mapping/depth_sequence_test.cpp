@@ -15,8 +15,8 @@ std::string flat_picture(std::size_t width, std::size_t height, float depth) {
   return npy_float32_bytes({{height, width}, std::vector<float>(width * height, depth)});
 }
 
-std::string complaint_about(const TemporaryFolder& folder) {
-  return complaint_of([&] { (void)load_depth_sequence(folder.path("")); });
+std::string error_message_for(const TemporaryFolder& folder) {
+  return error_message_of([&] { (void)load_depth_sequence(folder.path("")); });
 }
 
 TEST(DepthSequence, IsReadByNameWithItsPosesAndItsCamera) {
@@ -45,8 +45,8 @@ TEST(DepthSequence, RefusesWhatIsMissingOrWrongByNameAndPlace) {
     folder.write("a.pose.txt", k_pose);
     folder.write("b.depth.npy", picture);
     folder.write("b.pose.txt", pose);
-    const std::string complaint = complaint_about(folder);
-    EXPECT_NE(complaint.find(what), std::string::npos) << complaint << "\nexpected: " << what;
+    const std::string message = error_message_for(folder);
+    EXPECT_NE(message.find(what), std::string::npos) << message << "\nexpected: " << what;
   };
   const std::string good = flat_picture(8, 8, 1);
   expect_one("60 0 32", k_pose, good, "intrinsics.txt:line 1: 3 numbers; expected 9");
@@ -62,16 +62,16 @@ TEST(DepthSequence, RefusesWhatIsMissingOrWrongByNameAndPlace) {
 
 TEST(DepthSequence, RefusesAFolderWithoutPicturesOrAPictureWithoutPose) {
   const TemporaryFolder folder;
-  EXPECT_NE(complaint_about(folder).find("camera-intrinsics.txt: cannot be read"),
+  EXPECT_NE(error_message_for(folder).find("camera-intrinsics.txt: cannot be read"),
             std::string::npos);
   folder.write("camera-intrinsics.txt", k_pinhole);
-  EXPECT_NE(complaint_about(folder).find("0 depth pictures"), std::string::npos);
+  EXPECT_NE(error_message_for(folder).find("0 depth pictures"), std::string::npos);
   folder.write("a.depth.png", "no picture");
-  EXPECT_NE(complaint_about(folder).find("expected a PNG with one plane of 16 bits"),
+  EXPECT_NE(error_message_for(folder).find("expected a PNG with one plane of 16 bits"),
             std::string::npos);
   std::filesystem::remove(folder.path("a.depth.png"));
   folder.write("a.depth.npy", flat_picture(8, 8, 1));
-  EXPECT_NE(complaint_about(folder).find("a.pose.txt: cannot be read"), std::string::npos);
+  EXPECT_NE(error_message_for(folder).find("a.pose.txt: cannot be read"), std::string::npos);
 }
 
 // A wall at one metre, in two depth images, one of them oblique.
@@ -96,7 +96,7 @@ TEST(MapChain, MakesAWallFlatAndSaysWhatItDid) {
   EXPECT_LT(chain.planes().plane(0).rms_m, 0.0015);
   EXPECT_NEAR(std::abs(chain.planes().plane(0).offset_m), 1, 0.001);
   EXPECT_TRUE(chain.counts().notices.empty());
-  chain.snap();
+  chain.project_onto_planes();
   for (int i = 0; i < chain.map().count; ++i) {
     if (chain.planes().plane_of(i) == 0) {
       ASSERT_NEAR(chain.map().z[i], chain.map().z[0], 0.02);
@@ -124,8 +124,8 @@ TEST(DepthSequence, ReadsWhatIsLeftOutAndRefusesAWrongLine) {
         {"0 0 0 0 0 0 1\n0 0 0 0 0 0 0", "line 2: no radius"},
         {"0 0 nan 0 0 0 1", "line 1: a number that is not finite"},
         {many, "line 65: one more"}}) {
-    const std::string complaint = complaint_of([&, &text = lines] { (void)read(text); });
-    EXPECT_NE(complaint.find(what), std::string::npos) << complaint;
+    const std::string message = error_message_of([&, &text = lines] { (void)read(text); });
+    EXPECT_NE(message.find(what), std::string::npos) << message;
   }
 }
 
@@ -138,18 +138,19 @@ TEST(MapChain, LeavesOutThePen) {
   for (std::size_t y = 60; y < 90; ++y) {
     for (std::size_t x = 80; x < 120; ++x) depth[y * 200 + x] = 0.6f;
   }
-  const std::vector<LeftOut> pen = {{{-0.08, 0, 0.6}, {0.08, 0, 0.6}, 0.07}};
+  const std::vector<ExclusionCapsule> pen = {{{-0.08, 0, 0.6}, {0.08, 0, 0.6}, 0.07}};
   MapSettings settings;
   settings.voxels_max = 1 << 16;
-  for (const bool told : {false, true}) {
+  for (const bool with_capsules : {false, true}) {
     MapChain chain(settings);
-    chain.add_frame({200, 150, depth}, camera, Pose{}, told ? pen : std::vector<LeftOut>{});
+    chain.add_frame({200, 150, depth}, camera, Pose{},
+                    with_capsules ? pen : std::vector<ExclusionCapsule>{});
     chain.finish();
     int near = 0, far = 0;
     for (int i = 0; i < chain.map().count; ++i) ++(chain.map().z[i] < 0.8f ? near : far);
-    EXPECT_EQ(near == 0, told);
+    EXPECT_EQ(near == 0, with_capsules);
     EXPECT_GT(far, 5000);
-    EXPECT_EQ(chain.counts().left_out, told ? 30 * 40 : 0);
+    EXPECT_EQ(chain.counts().left_out, with_capsules ? 30 * 40 : 0);
   }
 }
 

@@ -37,11 +37,11 @@ TEST(MapHalves, OfARecordedDeskAgreeAndAreSmooth) {
     EXPECT_GT(plane.held_out, 1'000);
     EXPECT_LE(std::abs(plane.held_out_m), 0.0015);
   }
-  std::printf("moved %.3f mm at most; %.4f of %lld swallowed\n", 1e3 * halves.moved_most_m,
-              halves.swallowed_part, static_cast<long long>(halves.judged));
-  EXPECT_LE(halves.moved_most_m, 0.010001);
-  EXPECT_GT(2 * halves.judged, halves.snapped);
-  EXPECT_LE(halves.swallowed_part, 0.02);
+  std::printf("moved %.3f mm at most; %.4f of %lld swallowed\n", 1e3 * halves.displacement_max_m,
+              halves.wrong_normal_share, static_cast<long long>(halves.evaluated));
+  EXPECT_LE(halves.displacement_max_m, 0.010001);
+  EXPECT_GT(2 * halves.evaluated, halves.projected);
+  EXPECT_LE(halves.wrong_normal_share, 0.02);
 }
 
 }  // namespace

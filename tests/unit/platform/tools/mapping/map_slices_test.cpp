@@ -21,7 +21,7 @@ MapSettings small_settings() {
   MapSettings settings;
   settings.voxels_max = 20'000;
   settings.planes.points_min = 100;
-  return in_slices(settings);
+  return limited_for_slices(settings);
 }
 
 // Depth images of a room's corner with a disc in front of it, from six positions; a few stray
@@ -30,7 +30,7 @@ struct CornerOfARoom {
   CameraModel camera;
   std::vector<std::vector<float>> depth;
   std::vector<Pose> poses;
-  std::vector<LeftOut> left_out{{Vector3(0, 0, 0.2), Vector3(0, 0, 3), 0.05}};
+  std::vector<ExclusionCapsule> left_out{{Vector3(0, 0, 0.2), Vector3(0, 0, 3), 0.05}};
 
   CornerOfARoom() {
     camera.width = k_width, camera.height = k_height;
@@ -53,7 +53,7 @@ struct CornerOfARoom {
       }
     }
   }
-  [[nodiscard]] MapPicture picture(std::size_t i) const {
+  [[nodiscard]] MapImage picture(std::size_t i) const {
     return {{k_width, k_height, depth[i]}, camera, poses[i], left_out};
   }
 };
@@ -61,12 +61,12 @@ struct CornerOfARoom {
 struct Sliced {
   std::vector<std::byte> memory;
   MapSlices map;
-  int dearest = 0;
+  int steps_max = 0;
   std::map<MapSlices::Stage, std::pair<int, int>> taken_by;  // slices and steps
 
-  Sliced(const MapSettings& settings, int pictures_a_map) : memory(MapSlices::bytes(settings)) {
+  Sliced(const MapSettings& settings, int images_per_map) : memory(MapSlices::bytes(settings)) {
     Arena arena(memory);
-    EXPECT_EQ(map.prepare(settings, pictures_a_map, arena), Reason::none);
+    EXPECT_EQ(map.prepare(settings, images_per_map, arena), Reason::none);
   }
   void run(int steps) {
     while (!map.idle()) {
@@ -81,7 +81,7 @@ struct Sliced {
       }
       ASSERT_GT(taken, 0);
       ASSERT_LE(taken, steps + k_map_item_steps_max);
-      dearest = std::max(dearest, taken);
+      steps_max = std::max(steps_max, taken);
     }
   }
 };
@@ -115,7 +115,7 @@ TEST_P(OfAnySize, SlicesGiveTheChainsBits) {
     EXPECT_EQ(sliced.map.totals().maps, static_cast<std::int64_t>(i + 1) / 3);
     if (i % 3 != 2) continue;
     chain.finish();
-    chain.snap();
+    chain.project_onto_planes();
     EXPECT_TRUE(same_bits(bits_of(sliced.map.map()), bits_of(chain.map())));
     const MapTotals& totals = sliced.map.totals();
     EXPECT_EQ(totals.measured, chain.counts().measured);
@@ -173,34 +173,34 @@ TEST(MapSlices, MakeAMapOfWhatThereIsWhenAsked) {
   const CornerOfARoom corner;
   const MapSettings settings = small_settings();
   Sliced sliced(settings, 1'000);
-  sliced.map.make_map();  // no points: no map
+  sliced.map.start_map();  // no points: no map
   EXPECT_TRUE(sliced.map.idle());
   for (std::size_t i = 0; i < 2; ++i) {
     ASSERT_TRUE(sliced.map.look(corner.picture(i)));
     sliced.run(50'000);
   }
   EXPECT_EQ(sliced.map.map().count, 0);
-  sliced.map.make_map();
+  sliced.map.start_map();
   sliced.run(50'000);
   EXPECT_EQ(sliced.map.totals().maps, 1);
   EXPECT_GT(sliced.map.map().count, 0);
-  sliced.map.make_map();  // no new depth image
+  sliced.map.start_map();  // no new depth image
   EXPECT_TRUE(sliced.map.idle());
 }
 
 TEST(MapSlices, RefuseWhatWouldMakeASliceLonger) {
-  const auto refusal = [](MapSettings settings, int pictures_a_map) {
+  const auto refusal = [](MapSettings settings, int images_per_map) {
     std::vector<std::byte> memory(std::size_t{1} << 26);
     Arena arena(memory);
     MapSlices map;
-    const Reason reason = map.prepare(settings, pictures_a_map, arena);
+    const Reason reason = map.prepare(settings, images_per_map, arena);
     EXPECT_EQ(map.step(100), 0);
     return reason;
   };
   EXPECT_EQ(refusal(small_settings(), 1), Reason::none);
   EXPECT_EQ(refusal(small_settings(), 0), Reason::out_of_range);
   MapSettings settings = small_settings();
-  settings.smoothing.candidates_max = k_map_smoothed_over_max + 1;
+  settings.smoothing.candidates_max = k_map_smoothing_candidates_max + 1;
   EXPECT_EQ(refusal(settings, 1), Reason::out_of_range);
   EXPECT_EQ(MapSlices::bytes(settings), 0u);
   settings = small_settings();
@@ -236,7 +236,7 @@ TEST(MapSlices, TakeTheMostCandidatesAndRefuseOneMore) {
     settings.outliers.candidates_max = k_map_candidates_max + more;
     EXPECT_EQ(reason_of(settings), expected) << "outliers, " << more;
     settings = small_settings();
-    settings.smoothing.candidates_max = k_map_smoothed_over_max + more;
+    settings.smoothing.candidates_max = k_map_smoothing_candidates_max + more;
     EXPECT_EQ(reason_of(settings), expected) << "smoothing, " << more;
     settings = small_settings();
     settings.support.candidates_max = k_map_candidates_max + more;
@@ -250,7 +250,7 @@ TEST(MapSlices, TakeTheMostCandidatesAndRefuseOneMore) {
 TEST(MapSlices, RefuseAPictureThatIsNotWhole) {
   const CornerOfARoom corner;
   Sliced sliced(small_settings(), 1);
-  MapPicture picture = corner.picture(0);
+  MapImage picture = corner.picture(0);
   picture.picture.height += 1;
   EXPECT_FALSE(sliced.map.look(picture));
   EXPECT_TRUE(sliced.map.idle());

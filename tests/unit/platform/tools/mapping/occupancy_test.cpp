@@ -43,7 +43,7 @@ struct Corner {
       }
     }
   }
-  [[nodiscard]] DepthPicture picture() const { return {120, 90, depth}; }
+  [[nodiscard]] DepthImageView picture() const { return {120, 90, depth}; }
   void add_to(Occupancy& occupancy) const {
     occupancy.add_view(picture(), small_camera(), T_world_camera, {});
     occupancy.add_surface(map.points());
@@ -51,7 +51,8 @@ struct Corner {
 };
 
 // Fraction of points at this depth behind the near wall's inner part with the wanted state.
-double share(const Occupancy& occupancy, const Corner& corner, double behind_m, Occupied wanted) {
+double state_fraction(const Occupancy& occupancy, const Corner& corner, double behind_m,
+                      Occupied wanted) {
   int found = 0, all = 0;
   for (double x = -0.5; x <= -0.1; x += 0.013) {
     for (double y = -0.4; y <= 0.4; y += 0.013) {
@@ -68,12 +69,12 @@ TEST(Occupancy, IsOccupiedAtTheSurfaceFreeInFrontAndUnknownBehind) {
   const Corner corner;
   Occupancy occupancy({.resolution_m = 0.02});
   corner.add_to(occupancy);
-  EXPECT_GT(share(occupancy, corner, 0, Occupied::yes), 0.99);
+  EXPECT_GT(state_fraction(occupancy, corner, 0, Occupied::yes), 0.99);
   for (const double before : {-0.05, -0.1, -0.3, -0.6, -0.9}) {
-    EXPECT_GT(share(occupancy, corner, before, Occupied::no), 0.99) << before;
+    EXPECT_GT(state_fraction(occupancy, corner, before, Occupied::no), 0.99) << before;
   }
   for (const double behind : {0.03, 0.06, 0.2, 0.4}) {
-    EXPECT_EQ(share(occupancy, corner, behind, Occupied::unknown), 1) << behind;
+    EXPECT_EQ(state_fraction(occupancy, corner, behind, Occupied::unknown), 1) << behind;
   }
   EXPECT_GT(occupancy.counts().rays, 1000);
   EXPECT_EQ(occupancy.counts().out_of_range, 0);
@@ -120,7 +121,7 @@ TEST(Occupancy, KeepsASurfaceThatRaysGraze) {
   close.rotation = Quaternion(Eigen::AngleAxisd(-1.5, Vector3::UnitY()));
   occupancy.add_view({120, 90, std::vector<float>(120 * 90, 0.5f)}, small_camera(), close, {});
   occupancy.add_surface(corner.map.points());
-  EXPECT_GT(share(occupancy, corner, 0, Occupied::yes), 0.99);
+  EXPECT_GT(state_fraction(occupancy, corner, 0, Occupied::yes), 0.99);
 }
 
 TEST(Occupancy, CountsWhatDoesNotFitAndWhatIsNoPlace) {

@@ -35,7 +35,7 @@ class TemporaryFolder {
 };
 
 template <class Read>
-std::string complaint_of(const Read& read) {
+std::string error_message_of(const Read& read) {
   try {
     read();
   } catch (const InputError& error) {

@@ -24,7 +24,7 @@ TEST(PathCapture, MakesAStrokeOfWhatIsDrawnWhileTheButtonIsHeld) {
   EXPECT_EQ(path[0].points.back().time, at_ms(2000));
   EXPECT_NEAR(path[0].points[10].pose.translation.x(), 0.02, 1e-12);
   EXPECT_EQ(capture.counts().poses, 251);
-  EXPECT_EQ(capture.counts().taken, 251);
+  EXPECT_EQ(capture.counts().poses_accepted, 251);
 }
 
 TEST(PathCapture, MakesAWaypointOfAClickWhereTheTipWasAsItBegan) {
@@ -64,7 +64,7 @@ TEST(PathCapture, TakesNoPoseThatIsNotMeasuredOrNotInTheRobotsFrameAndCountsIt) 
   EXPECT_EQ(capture.counts().not_measured, 20);
   EXPECT_EQ(capture.counts().not_in_robot, 20);
   EXPECT_EQ(capture.counts().not_usable, 20);
-  EXPECT_EQ(capture.counts().taken, 41);
+  EXPECT_EQ(capture.counts().poses_accepted, 41);
   const DrawnPath path = capture.path();
   ASSERT_EQ(path.size(), 1u);
   for (const UncertainPose& point : path[0].points) {
@@ -107,10 +107,10 @@ TEST(PathCapture, DeletesTheLastAndTakesChangesBack) {
   EXPECT_EQ(capture.path()[2].points[0].pose.translation.x(), 3);
   for (int i = 0; i < 3; ++i) press(capture, 7000 + 100 * i, Button::undo);
   EXPECT_TRUE(capture.path().empty());
-  EXPECT_EQ(capture.counts().presses_in_vain, 0);
+  EXPECT_EQ(capture.counts().presses_without_effect, 0);
   press(capture, 8000, Button::undo);
   press(capture, 8100, Button::delete_last);
-  EXPECT_EQ(capture.counts().presses_in_vain, 2);
+  EXPECT_EQ(capture.counts().presses_without_effect, 2);
 }
 
 TEST(PathCapture, ChangesNothingBehindAStrokeThatIsUnderWay) {
@@ -121,7 +121,7 @@ TEST(PathCapture, ChangesNothingBehindAStrokeThatIsUnderWay) {
   press(capture, 1001, Button::delete_last);
   press(capture, 1002, Button::undo);
   EXPECT_EQ(capture.path().size(), 1u);
-  EXPECT_EQ(capture.counts().presses_in_vain, 2);
+  EXPECT_EQ(capture.counts().presses_without_effect, 2);
 }
 
 TEST(PathCapture, EndsAtFinishWithTheStrokeThatIsHeld) {
@@ -131,10 +131,10 @@ TEST(PathCapture, EndsAtFinishWithTheStrokeThatIsHeld) {
   press(capture, 400, Button::finish);
   EXPECT_TRUE(capture.finished());
   ASSERT_EQ(capture.path().size(), 1u);
-  const std::int64_t after = capture.counts().after_finish;
+  const std::int64_t after = capture.counts().inputs_after_finish;
   draw_line(capture, 1000, 2000);
   EXPECT_EQ(capture.path().size(), 1u);
-  EXPECT_EQ(capture.counts().after_finish, after + 253);
+  EXPECT_EQ(capture.counts().inputs_after_finish, after + 253);
 }
 
 TEST(PathCapture, CountsWhatDoesNotFit) {
@@ -145,7 +145,7 @@ TEST(PathCapture, CountsWhatDoesNotFit) {
   draw_line(capture, 0, 1000);
   draw_line(capture, 2000, 3000);
   click(capture, 4000, {1, 0, 0});
-  EXPECT_EQ(capture.counts().points_left_out, 51 - 9 + 1);  // no capacity for the click either
+  EXPECT_EQ(capture.counts().points_over_capacity, 51 - 9 + 1);  // no capacity for the click either
   const DrawnPath path = capture.path();
   ASSERT_EQ(path.size(), 2u);
   EXPECT_EQ(path[1].points.size(), 9u);
@@ -154,7 +154,7 @@ TEST(PathCapture, CountsWhatDoesNotFit) {
   PathCapture small(few);
   click(small, 0, {1, 0, 0});
   click(small, 1000, {2, 0, 0});
-  EXPECT_EQ(small.counts().strokes_left_out, 1);
+  EXPECT_EQ(small.counts().strokes_over_capacity, 1);
   ASSERT_EQ(small.path().size(), 1u);
   EXPECT_EQ(small.path()[0].points[0].pose.translation.x(), 1);
 }
@@ -164,13 +164,13 @@ TEST(PathCapture, CountsAPressWithoutAPose) {
   capture.add(down(0));
   capture.add(up(1));
   capture.add(up(2));  // already released
-  EXPECT_EQ(capture.counts().presses_in_vain, 1);
+  EXPECT_EQ(capture.counts().presses_without_effect, 1);
   EXPECT_TRUE(capture.path().empty());
 }
 
 TEST(PathCapture, RefusesSettingsByName) {
   for (const auto& change : {+[](CaptureSettings& s) { s.stroke.spacing_m = 0; },
-                             +[](CaptureSettings& s) { s.click_reach_m = -1; },
+                             +[](CaptureSettings& s) { s.click_radius_m = -1; },
                              +[](CaptureSettings& s) { s.points_max = 0; },
                              +[](CaptureSettings& s) { s.elements_max = 1 << 30; }}) {
     CaptureSettings settings;

@@ -25,7 +25,7 @@ void write_run(const std::string& path, const std::vector<ButtonEvent>& events,
   for (const ButtonEvent& event : events) writer.write_button(event);
 }
 
-std::string complaint(const std::string& recording, const RecordedPathOptions& options) {
+std::string error_message(const std::string& recording, const RecordedPathOptions& options) {
   try {
     (void)recorded_path(recording, options);
   } catch (const InputError& error) {
@@ -45,7 +45,7 @@ TEST(RecordedPath, PutsPosesAndButtonsInTheOrderOfTheirTime) {
   EXPECT_EQ(drawn.unix_offset.nanoseconds, 1'700'000'000'000'000'123);
   ASSERT_EQ(drawn.path.size(), 1u);
   // The poses at the press and at the release are included: 0.02 to 0.1 m, a point every 2 mm.
-  EXPECT_EQ(drawn.counts.taken, 201);
+  EXPECT_EQ(drawn.counts.poses_accepted, 201);
   ASSERT_EQ(drawn.path[0].points.size(), 41u);
   EXPECT_EQ(drawn.path[0].points.front().time, at_ms(200));
   EXPECT_EQ(drawn.path[0].points.back().time, at_ms(1000));
@@ -60,7 +60,7 @@ TEST(RecordedPath, IsOfTheToolThatIsNamed) {
   EXPECT_EQ(
       recorded_path(folder.file("run.mcap"), options).path.at(0).points[0].pose.translation.y(), 1);
   options.tool = "third";
-  EXPECT_NE(complaint(folder.file("run.mcap"), options)
+  EXPECT_NE(error_message(folder.file("run.mcap"), options)
                 .find("no tool 'third'; expected one of: pen, second pen"),
             std::string::npos);
 }
@@ -77,14 +77,14 @@ TEST(RecordedPath, SaysWhyThereIsNone) {
   const TemporaryFolder folder;
   write_run(folder.file("none.mcap"), {});
   EXPECT_NE(
-      complaint(folder.file("none.mcap"), {}).find("no button was recorded; expected --button"),
+      error_message(folder.file("none.mcap"), {}).find("no button was recorded; expected --button"),
       std::string::npos);
   write_run(folder.file("world.mcap"), {down(200), up(1000)}, ReferenceFrame::world);
-  EXPECT_NE(complaint(folder.file("world.mcap"), {})
+  EXPECT_NE(error_message(folder.file("world.mcap"), {})
                 .find("of 201 poses while the button was held 0 were not measured and 201 not in "
                       "the robot's frame"),
             std::string::npos);
-  EXPECT_NE(complaint(folder.file("absent.mcap"), {}), "no complaint");
+  EXPECT_NE(error_message(folder.file("absent.mcap"), {}), "no complaint");
 }
 
 }  // namespace

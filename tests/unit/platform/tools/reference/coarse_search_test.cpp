@@ -18,8 +18,9 @@ RobotModel post_arm() {
 TEST(CoarseSearch, HasAnEndNearTheRobotFromFarAway) {
   const std::vector<SceneFrame> scene = post_arm_scene(post_arm(), std::array{0.4, 0.02});
   CoarseSearch search(scene);
-  const Pose start{pose_of_seed({0, 0, 0, 0.5, -0.4, 0.4}).rotation * k_post_arm_truth.rotation,
-                   k_post_arm_truth.translation + Vector3(0.3, -0.25, 0.2)};
+  const Pose start{
+      pose_from_xyz_rpy({0, 0, 0, 0.5, -0.4, 0.4}).rotation * k_post_arm_truth.rotation,
+      k_post_arm_truth.translation + Vector3(0.3, -0.25, 0.2)};
   const std::vector<CoarsePose> best = search.best(spread_poses(start, {}), 3, 0.06);
   ASSERT_FALSE(best.empty());
   EXPECT_LT(search.surface_motion_m(best[0].T_world_base, k_post_arm_truth), 0.05);
@@ -42,7 +43,7 @@ TEST(CoarseSearch, SpreadsPosesOverTheRangeAndNotBeyond) {
     low = low.cwiseMin(shift);
     high = high.cwiseMax(shift);
     turn = std::max(turn, pose.rotation.angularDistance(k_post_arm_truth.rotation));
-    EXPECT_TRUE(range.holds(k_post_arm_truth, pose));
+    EXPECT_TRUE(range.contains(k_post_arm_truth, pose));
   }
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(low(axis), -0.2, 0.002);
@@ -55,10 +56,10 @@ TEST(CoarseSearch, HoldsNoPoseBeyondTheRange) {
   const SearchRange range{0.2, 0.3};
   Pose pose = k_post_arm_truth;
   pose.translation.x() += 0.36;
-  EXPECT_FALSE(range.holds(k_post_arm_truth, pose));
+  EXPECT_FALSE(range.contains(k_post_arm_truth, pose));
   pose = k_post_arm_truth;
-  pose.rotation = pose_of_seed({0, 0, 0, 0, 0, 0.58}).rotation * pose.rotation;
-  EXPECT_FALSE(range.holds(k_post_arm_truth, pose));
+  pose.rotation = pose_from_xyz_rpy({0, 0, 0, 0, 0, 0.58}).rotation * pose.rotation;
+  EXPECT_FALSE(range.contains(k_post_arm_truth, pose));
 }
 
 TEST(CoarseSearch, MeasuresTheMotionOfTheSurface) {

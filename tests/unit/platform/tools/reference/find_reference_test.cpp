@@ -35,9 +35,9 @@ PosedSurface post() { return surface_of({{{0.2, 0.2, 0.5}, {0, 0, 0.25}}}); }
 
 // A view from above, oblique to all sides of a box: an edge-on side leaves a direction
 // undetermined. The yaw is applied before the roll, as a roll first would tilt the robot.
-const Pose k_truth{
-    pose_of_seed({0, 0, 0, 2.094, 0, 0}).rotation * pose_of_seed({0, 0, 0, 0, 0, 0.7}).rotation,
-    {-0.1, 0.15, 1.3}};
+const Pose k_truth{pose_from_xyz_rpy({0, 0, 0, 2.094, 0, 0}).rotation *
+                       pose_from_xyz_rpy({0, 0, 0, 0, 0, 0.7}).rotation,
+                   {-0.1, 0.15, 1.3}};
 
 std::vector<SceneFrame> scene_of(const PosedSurface& model, const Pose& T_camera_base) {
   SceneFrame frame;
@@ -54,24 +54,24 @@ std::vector<SceneFrame> scene_of(const PosedSurface& model, const Pose& T_camera
 }
 
 Pose off(double shift_m, double radians) {
-  return Pose{pose_of_seed({0, 0, 0, radians, -radians, radians}).rotation * k_truth.rotation,
+  return Pose{pose_from_xyz_rpy({0, 0, 0, radians, -radians, radians}).rotation * k_truth.rotation,
               k_truth.translation + Vector3(shift_m, -shift_m, shift_m)};
 }
 
 TEST(FindReference, AcceptsTheRobotThatIsThere) {
   const Reference r = find_reference(scene_of(arm(), k_truth), off(0.05, 0.08), {});
-  EXPECT_EQ(r.verdict, ReferenceVerdict::accepted) << r.why;
+  EXPECT_EQ(r.verdict, ReferenceVerdict::accepted) << r.reason;
   EXPECT_LT((r.found.alignment.T_world_base.translation - k_truth.translation).norm(), 1e-3);
   EXPECT_GT(r.starts, 1);
 }
 
 TEST(FindReference, CallsAPostThatLooksAlikeFromFourSidesAmbiguous) {
   const Reference r = find_reference(scene_of(post(), k_truth), off(0.02, 0.03), {});
-  EXPECT_EQ(r.verdict, ReferenceVerdict::ambiguous) << r.why;
-  ASSERT_FALSE(r.rivals.empty());
-  EXPECT_TRUE(SearchRange{}.holds(off(0.02, 0.03), r.found.alignment.T_world_base));
-  EXPECT_FALSE(SearchRange{}.holds(off(0.02, 0.03), r.rivals[0].alignment.T_world_base));
-  const double turn = r.rivals[0].alignment.T_world_base.rotation.angularDistance(
+  EXPECT_EQ(r.verdict, ReferenceVerdict::ambiguous) << r.reason;
+  ASSERT_FALSE(r.alternatives.empty());
+  EXPECT_TRUE(SearchRange{}.contains(off(0.02, 0.03), r.found.alignment.T_world_base));
+  EXPECT_FALSE(SearchRange{}.contains(off(0.02, 0.03), r.alternatives[0].alignment.T_world_base));
+  const double turn = r.alternatives[0].alignment.T_world_base.rotation.angularDistance(
       r.found.alignment.T_world_base.rotation);
   EXPECT_NEAR(std::fmod(turn + 0.01, M_PI / 2), 0.01, 0.02);
 }
@@ -81,7 +81,7 @@ TEST(FindReference, RefusesAnEmptyRoomAndSaysWhy) {
   for (float& z : frames[0].depth_m) z = 2.2f;
   const Reference r = find_reference(frames, off(0.05, 0.08), {});
   EXPECT_EQ(r.verdict, ReferenceVerdict::refused);
-  EXPECT_FALSE(r.why.empty());
+  EXPECT_FALSE(r.reason.empty());
 }
 
 TEST(FindReference, RefusesWhatLiesFlatOnAWall) {
@@ -91,12 +91,12 @@ TEST(FindReference, RefusesWhatLiesFlatOnAWall) {
   FindReferenceSettings settings;
   settings.sigma_max_m = settings.sigma_max_rad = 1e9;  // a wall leaves 3 dof open
   settings.alignment.gate_count = 0;
-  settings.other_starts = false;
+  settings.search_alternatives = false;
   const Pose flat{Quaternion::Identity(), {0, 0, 1.31}};
   const Reference r = find_reference(frames, flat, settings);
   EXPECT_EQ(r.found.judgement.inlier_share(), 1);
   EXPECT_EQ(r.verdict, ReferenceVerdict::refused);
-  EXPECT_NE(r.why.find("outline"), std::string::npos) << r.why;
+  EXPECT_NE(r.reason.find("outline"), std::string::npos) << r.reason;
 }
 
 TEST(FindReference, RefusesWhatIsMostlyHidden) {
@@ -118,24 +118,24 @@ TEST(FindReference, WantsAMaskOrASecondPlaceWhereHalfIsHidden) {
   EXPECT_LT(alone.found.judgement.visible_share(), 0.75);
   EXPECT_GT(alone.found.judgement.visible_share(), 0.4);
   EXPECT_EQ(alone.verdict, ReferenceVerdict::refused);
-  EXPECT_NE(alone.why.find("from one place without a mask"), std::string::npos) << alone.why;
+  EXPECT_NE(alone.reason.find("from one place without a mask"), std::string::npos) << alone.reason;
   frames[0].mask = mask;
   EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::accepted);
   frames[0].mask.clear();
   frames.push_back(frames[0]);
   EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::refused);
   // From a second position the occluding object no longer covers the robot.
-  const Pose aside{pose_of_seed({0, 0, 0, 0, 0.2, 0}).rotation, {-0.3, 0, 0.1}};
+  const Pose aside{pose_from_xyz_rpy({0, 0, 0, 0, 0.2, 0}).rotation, {-0.3, 0, 0.1}};
   frames[1] = scene_of(arm(), aside * k_truth)[0];
   frames[1].T_camera_world = aside;
   EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::accepted);
 }
 
 TEST(FindReference, FindsTheRobotFromAFarCornerOfTheRange) {
-  const Pose start{pose_of_seed({0, 0, 0, 0.5, -0.5, 0.4}).rotation * k_truth.rotation,
+  const Pose start{pose_from_xyz_rpy({0, 0, 0, 0.5, -0.5, 0.4}).rotation * k_truth.rotation,
                    k_truth.translation + Vector3(0.3, -0.3, 0.3)};
   const Reference r = find_reference(scene_of(arm(), k_truth), start, {});
-  EXPECT_EQ(r.verdict, ReferenceVerdict::accepted) << r.why;
+  EXPECT_EQ(r.verdict, ReferenceVerdict::accepted) << r.reason;
   EXPECT_LT((r.found.alignment.T_world_base.translation - k_truth.translation).norm(), 1e-3);
 }
 
@@ -144,18 +144,18 @@ TEST(FindReference, AcceptsNoPoseBeyondTheRange) {
   settings.range = {0.03, 0.05};
   const Reference r = find_reference(scene_of(arm(), k_truth), off(0.08, 0.02), settings);
   EXPECT_EQ(r.verdict, ReferenceVerdict::refused);
-  EXPECT_NE(r.why.find("range"), std::string::npos) << r.why;
+  EXPECT_NE(r.reason.find("range"), std::string::npos) << r.reason;
 }
 
 TEST(FindReference, CallsOnePictureAmbiguousIfNoRivalWasSearched) {
   FindReferenceSettings settings;
-  settings.other_starts = false;
+  settings.search_alternatives = false;
   std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
   const Reference alone = find_reference(frames, off(0.02, 0.03), settings);
-  EXPECT_EQ(alone.verdict, ReferenceVerdict::ambiguous) << alone.why;
+  EXPECT_EQ(alone.verdict, ReferenceVerdict::ambiguous) << alone.reason;
   for (const float z : frames[0].depth_m) frames[0].mask.push_back(z < 2 ? 1 : 0);
   const Reference masked = find_reference(frames, off(0.02, 0.03), settings);
-  EXPECT_EQ(masked.verdict, ReferenceVerdict::accepted) << masked.why;
+  EXPECT_EQ(masked.verdict, ReferenceVerdict::accepted) << masked.reason;
 }
 
 TEST(FindReference, StatesTheErrorsThatAPictureShares) {
@@ -189,7 +189,7 @@ TEST(FindReference, RefusesOtherJointValuesAndNamesTheLink) {
   std::vector<SceneFrame> frames = post_arm_scene(robot, std::array{0.4, 0.02});
   for (const float z : frames[0].depth_m) frames[0].mask.push_back(z < 2 ? 1 : 0);
   const Reference right = find_reference(frames, k_post_arm_guess, {});
-  EXPECT_EQ(right.verdict, ReferenceVerdict::accepted) << right.why;
+  EXPECT_EQ(right.verdict, ReferenceVerdict::accepted) << right.reason;
   frames[0].model = posed_surface(robot, std::array{0.4, 0.14}, "a test");
   FindReferenceSettings lenient;
   lenient.inlier_share_min = 0;
@@ -197,7 +197,7 @@ TEST(FindReference, RefusesOtherJointValuesAndNamesTheLink) {
   lenient.mask_share_min = 0;
   const Reference slid = find_reference(frames, k_post_arm_guess, lenient);
   EXPECT_EQ(slid.verdict, ReferenceVerdict::refused);
-  EXPECT_NE(slid.why.find("link 2"), std::string::npos) << slid.why;
+  EXPECT_NE(slid.reason.find("link 2"), std::string::npos) << slid.reason;
 }
 
 TEST(FindReference, RefusesAPictureThatDisagreesWithTheOthers) {
@@ -214,7 +214,7 @@ TEST(FindReference, RefusesAPictureThatDisagreesWithTheOthers) {
   lenient.seen_through_share_max = 0.3;
   const Reference r = find_reference(frames, k_truth, lenient);
   EXPECT_EQ(r.verdict, ReferenceVerdict::refused);
-  EXPECT_EQ(r.why.rfind("d: ", 0), 0u) << r.why;
+  EXPECT_EQ(r.reason.rfind("d: ", 0), 0u) << r.reason;
 }
 
 TEST(FindReference, GivesTheSameBitsAgain) {
@@ -226,7 +226,7 @@ TEST(FindReference, GivesTheSameBitsAgain) {
 }
 
 TEST(Seed, TurnsAboutFixedAxes) {
-  const Pose pose = pose_of_seed({1, 2, 3, M_PI / 2, 0, M_PI / 2});
+  const Pose pose = pose_from_xyz_rpy({1, 2, 3, M_PI / 2, 0, M_PI / 2});
   // Roll about x is applied first: y goes to z, which the yaw keeps; the yaw moves x to y.
   EXPECT_LT((pose.rotation * Vector3::UnitY() - Vector3::UnitZ()).norm(), 1e-12);
   EXPECT_LT((pose.rotation * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-12);

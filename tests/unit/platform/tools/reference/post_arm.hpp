@@ -27,13 +27,13 @@ inline std::string post_arm_xml() {
 }
 
 // Ground truth of T_camera_base.
-inline const Pose k_post_arm_truth{
-    pose_of_seed({0, 0, 0, 2.094, 0, 0}).rotation * pose_of_seed({0, 0, 0, 0, 0, 0.7}).rotation,
-    {-0.1, 0.15, 1.3}};
+inline const Pose k_post_arm_truth{pose_from_xyz_rpy({0, 0, 0, 2.094, 0, 0}).rotation *
+                                       pose_from_xyz_rpy({0, 0, 0, 0, 0, 0.7}).rotation,
+                                   {-0.1, 0.15, 1.3}};
 
 // Initial guess: the ground truth with an error of a few degrees and centimetres.
 inline const Pose k_post_arm_guess{
-    k_post_arm_truth.rotation * pose_of_seed({0, 0, 0, 0.05, 0.05, 0}).rotation,
+    k_post_arm_truth.rotation * pose_from_xyz_rpy({0, 0, 0, 0.05, 0.05, 0}).rotation,
     k_post_arm_truth.translation + Vector3(0.03, -0.03, 0.03)};
 
 // One depth image, with a wall behind the robot.

@@ -17,7 +17,7 @@ namespace {
 using ReferenceListening = DdsTest;
 using test::expect_input_error;
 
-constexpr Duration k_patience = milliseconds(k_patience_ms);
+constexpr Duration k_timeout = milliseconds(k_timeout_ms);
 
 // The joint states include a joint of another robot, and their order is not the URDF's.
 TEST_F(ReferenceListening, GivesWhatFilesGive) {
@@ -25,53 +25,53 @@ TEST_F(ReferenceListening, GivesWhatFilesGive) {
   const RobotModel from_file = load_robot({files.write("arm.urdf", post_arm_xml()), {}});
   const std::vector<double> given = {0.4, 0.02};
 
-  RobotSpeaker speaker({"slide", "gripper", "turn"}, {0.02, 9, 0.4});
-  speaker.say_description(post_arm_xml());
-  ReferenceListener listener(test_settings(), {true, true, true}, k_patience,
+  SimulatedRobotDriver speaker({"slide", "gripper", "turn"}, {0.02, 9, 0.4});
+  speaker.publish_description(post_arm_xml());
+  ReferenceListener listener(test_settings(), {true, true, true}, k_timeout,
                              [&](double, const std::string&) {
-                               speaker.say_joints();
-                               speaker.say_guess(k_post_arm_guess);
+                               speaker.publish_joints();
+                               speaker.publish_guess(k_post_arm_guess);
                              });
-  const RobotModel heard = load_robot({"rt/robot_description", {}, {}, listener.description()});
-  EXPECT_EQ(heard.inputs, (std::vector<std::string>{"turn", "slide"}));
-  const HeardPlace place = listener.place(heard.inputs);
-  EXPECT_EQ(place.positions, given);
-  EXPECT_STREQ(place.guess.frame.data(), "hmd_tof_optical");
+  const RobotModel received = load_robot({"rt/robot_description", {}, {}, listener.description()});
+  EXPECT_EQ(received.inputs, (std::vector<std::string>{"turn", "slide"}));
+  const ReceivedInputs inputs = listener.wait_for_inputs(received.inputs);
+  EXPECT_EQ(inputs.positions, given);
+  EXPECT_STREQ(inputs.guess.frame.data(), "hmd_tof_optical");
 
   const Reference by_files = find_reference(post_arm_scene(from_file, given), k_post_arm_guess, {});
-  const Reference by_ear =
-      find_reference(post_arm_scene(heard, place.positions), place.guess.pose, {});
-  EXPECT_EQ(by_files.verdict, ReferenceVerdict::accepted) << by_files.why;
-  EXPECT_EQ(by_ear.verdict, ReferenceVerdict::accepted) << by_ear.why;
-  const Pose &a = by_files.found.alignment.T_world_base, &b = by_ear.found.alignment.T_world_base;
+  const Reference by_dds =
+      find_reference(post_arm_scene(received, inputs.positions), inputs.guess.pose, {});
+  EXPECT_EQ(by_files.verdict, ReferenceVerdict::accepted) << by_files.reason;
+  EXPECT_EQ(by_dds.verdict, ReferenceVerdict::accepted) << by_dds.reason;
+  const Pose &a = by_files.found.alignment.T_world_base, &b = by_dds.found.alignment.T_world_base;
   EXPECT_LT((a.translation - b.translation).norm(), 1e-9);  // the quaternion is normalised again
   EXPECT_LT(a.rotation.angularDistance(b.rotation), 1e-7);
   EXPECT_LT((b.translation - k_post_arm_truth.translation).norm(), 1e-3);
 }
 
 TEST_F(ReferenceListening, TakesTheNewestStateOfJointsWhenTheGuessComes) {
-  RobotSpeaker early({"turn"}, {0.1}), late({"turn"}, {0.7});
-  int said = 0;
-  ReferenceListener listener(test_settings(), {false, true, true}, k_patience,
+  SimulatedRobotDriver early({"turn"}, {0.1}), late({"turn"}, {0.7});
+  int published = 0;
+  ReferenceListener listener(test_settings(), {false, true, true}, k_timeout,
                              [&](double, const std::string& topics) {
                                if (topics != "rt/initialpose") {
                                  EXPECT_EQ(topics, "rt/joint_states, rt/initialpose");
-                                 early.say_joints();
-                               } else if (late.is_known()) {
-                                 late.say_joints();
-                                 if (++said > 4) late.say_guess(k_post_arm_truth);
+                                 early.publish_joints();
+                               } else if (late.is_matched()) {
+                                 late.publish_joints();
+                                 if (++published > 4) late.publish_guess(k_post_arm_truth);
                                }
                              });
-  EXPECT_EQ(listener.place({"turn"}).positions, std::vector<double>{0.7});
+  EXPECT_EQ(listener.wait_for_inputs({"turn"}).positions, std::vector<double>{0.7});
 }
 
 TEST_F(ReferenceListening, SaysWhatWasNotHeardAndWhoPublishesIt) {
-  RobotSpeaker speaker({"turn", "slide"}, {0.1, 0.2});
+  SimulatedRobotDriver speaker({"turn", "slide"}, {0.1, 0.2});
   const Duration little = milliseconds(300);
   expect_input_error(
       [&] {
         ReferenceListener listener(test_settings(), {true, true, true}, little,
-                                   [&](double, const std::string&) { speaker.say_joints(); });
+                                   [&](double, const std::string&) { speaker.publish_joints(); });
         (void)listener.description();
       },
       {"0.3 s on lo, domain 0", "rt/robot_description: nothing heard", "robot_state_publisher",
@@ -79,21 +79,21 @@ TEST_F(ReferenceListening, SaysWhatWasNotHeardAndWhoPublishesIt) {
   expect_input_error(
       [&] {
         ReferenceListener listener(test_settings(), {false, true, false}, little, {});
-        (void)listener.place({"turn"});
+        (void)listener.wait_for_inputs({"turn"});
       },
       {"rt/joint_states: nothing heard", "joint_state_publisher", "--joints"});
 }
 
 TEST_F(ReferenceListening, NamesTheJointThatNoStateHas) {
-  RobotSpeaker speaker({"turn", "wrist", "wrist"}, {0.1, 0.2, 0.3});
-  for (const std::string lacking : {"elbow", "wrist"}) {
+  SimulatedRobotDriver speaker({"turn", "wrist", "wrist"}, {0.1, 0.2, 0.3});
+  for (const std::string missing : {"elbow", "wrist"}) {
     expect_input_error(
         [&] {
           ReferenceListener listener(test_settings(), {false, true, false}, milliseconds(1000),
-                                     [&](double, const std::string&) { speaker.say_joints(); });
-          (void)listener.place({"turn", lacking});
+                                     [&](double, const std::string&) { speaker.publish_joints(); });
+          (void)listener.wait_for_inputs({"turn", missing});
         },
-        {"rt/joint_states: no state", ("'" + lacking + "'").c_str(), "all of the robot's joints"});
+        {"rt/joint_states: no state", ("'" + missing + "'").c_str(), "all of the robot's joints"});
   }
 }
 

@@ -37,16 +37,16 @@ TEST(Plots, PutsTicksAtRoundNumbersInsideTheRange) {
 }
 
 TEST(Plots, GivesAnEmptyRangeAWidth) {
-  EXPECT_GT(widened({3, 3}, 0).span(), 0);
+  EXPECT_GT(with_margin({3, 3}, 0).span(), 0);
   const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_GT(widened({infinity, -infinity}, 0).span(), 0);
+  EXPECT_GT(with_margin({infinity, -infinity}, 0).span(), 0);
 }
 
 TEST(Plots, MapsValuesToTheFrameWithYUpwards) {
   SvgCanvas canvas(200, 100);
   const Axes axes(canvas, {10, 20}, {100, 50}, {0, 10}, {-1, 1});
-  EXPECT_EQ(axes.place(0, 1), Vector2(10, 20));
-  EXPECT_EQ(axes.place(10, -1), Vector2(110, 70));
+  EXPECT_EQ(axes.to_canvas(0, 1), Vector2(10, 20));
+  EXPECT_EQ(axes.to_canvas(10, -1), Vector2(110, 70));
 }
 
 TEST(Plots, BreaksALineWhereAPointIsNotFinite) {

@@ -43,8 +43,8 @@ TEST(Statistics, SumsUpAKnownColumn) {
   EXPECT_DOUBLE_EQ(summary.sd, std::sqrt(50.0 / 4));
   EXPECT_DOUBLE_EQ(summary.rms, std::sqrt(11.0));
   EXPECT_DOUBLE_EQ(summary.median, 1);
-  EXPECT_DOUBLE_EQ(summary.least, -3);
-  EXPECT_DOUBLE_EQ(summary.greatest, 5);
+  EXPECT_DOUBLE_EQ(summary.minimum, -3);
+  EXPECT_DOUBLE_EQ(summary.maximum, 5);
 }
 
 TEST(Statistics, TakesTheMeanOfTheTwoMiddleValuesOfAnEvenCount) {

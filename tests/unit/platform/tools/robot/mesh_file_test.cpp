@@ -86,9 +86,9 @@ TEST(MeshFile, SkipsAndCountsTrianglesWithoutAnArea) {
 
 TEST(MeshFile, RefusesFilesThatAreNotWhatTheySay) {
   const Files files;
-  std::string lies = stl_bytes(box_surface({0.1, 0.2, 0.3}));
-  lies[83] = '\x7f';  // about two thousand million triangles
-  expect_input_error([&] { (void)read_mesh(files.write("lies.stl", lies), k_one); },
+  std::string malformed = stl_bytes(box_surface({0.1, 0.2, 0.3}));
+  malformed[83] = '\x7f';  // about two thousand million triangles
+  expect_input_error([&] { (void)read_mesh(files.write("lies.stl", malformed), k_one); },
                      {"lies.stl:byte 80"});
   expect_input_error([&] { (void)read_mesh(files.write("e.stl", ""), k_one); }, {"e.stl"});
   expect_input_error([&] { (void)read_mesh(files.write("e.obj", "v 1 2\nf 9 9 9\n"), k_one); },
@@ -143,7 +143,8 @@ TEST(FindMesh, OfAFileStaysInItsFolderAndThePackageFolders) {
 
 // Reads the Collada file above with `from` replaced by `to`. assimp 5.2.5 crashed on the first two
 // cases and exhausted the memory on the others.
-void expect_outlived(const std::string& from, const std::string& to, const char* message) {
+void expect_refused_after_crash(const std::string& from, const std::string& to,
+                                const char* message) {
   const Files files;
   std::string text = collada("0.001", "Z_UP");
   ASSERT_NE(text.find(from), std::string::npos) << from;
@@ -153,14 +154,15 @@ void expect_outlived(const std::string& from, const std::string& to, const char*
 }
 
 TEST(MeshFile, OutlivesACrashOfTheLibrary) {
-  expect_outlived("stride='3'", "stride='3' offset='99999999'", "fails on it");
-  expect_outlived("instance_geometry url='#g'", "instance_node url='#n'", "fails on it");
+  expect_refused_after_crash("stride='3'", "stride='3' offset='99999999'", "fails on it");
+  expect_refused_after_crash("instance_geometry url='#g'", "instance_node url='#n'", "fails on it");
 }
 
 #ifndef GLINT_SANITIZED  // sanitizers reserve more address space than any limit
 TEST(MeshFile, BoundsTheMemoryOfTheLibrary) {
-  expect_outlived("count='9'", "count='4294967295'", "1024 MB of memory");
-  expect_outlived("triangles count='1'", "triangles count='4294967295'", "1024 MB of memory");
+  expect_refused_after_crash("count='9'", "count='4294967295'", "1024 MB of memory");
+  expect_refused_after_crash("triangles count='1'", "triangles count='4294967295'",
+                             "1024 MB of memory");
 }
 #endif
 

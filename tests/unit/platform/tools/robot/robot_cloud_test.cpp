@@ -117,27 +117,27 @@ TEST(RobotCloud, RefusesFilesByNameAndLine) {
   const std::string path = files.folder() + "/arm.ply";
   write_robot_cloud(path, sample_robot(robot(files), 100));
   const std::string good = bytes_of(path);
-  const auto complaint = [&](const std::string& from, const std::string& to,
-                             std::initializer_list<const char*> words) {
+  const auto expect_error = [&](const std::string& from, const std::string& to,
+                                std::initializer_list<const char*> words) {
     std::string bytes = good;
     const std::size_t at = bytes.find(from);
     ASSERT_NE(at, std::string::npos) << from;
     bytes.replace(at, from.size(), to);
     expect_input_error([&] { (void)read_robot_cloud(files.write("bad.ply", bytes)); }, words);
   };
-  complaint("ply\n", "plx\n", {"bad.ply:line 1", "ply"});
-  complaint("glint robot cloud 1", "made by hand", {"bad.ply", "glint robot cloud 1"});
-  complaint("binary_little_endian", "ascii", {"bad.ply:line 2", "binary_little_endian"});
-  complaint("vertex 100", "vertex 101", {"bad.ply", "2600 bytes for 101 points"});
-  complaint("vertex 100", "vertex 4000000000", {"bad.ply", "a count up to"});
-  complaint("ushort link", "uint link", {"bad.ply", "ushort link"});
-  complaint("joint turning 0", "joint turning 1", {"bad.ply", "a count up to 0"});
-  complaint("joint turning", "joint bending", {"bad.ply", "fixed, turning or sliding"});
-  complaint("sliding 1 0", "sliding 1 7", {"bad.ply", "input 7"});
-  complaint("comment input j\n", "", {"bad.ply", "input 0"});
-  complaint("comment link the ball\n", "", {"bad.ply", "2 links and 2 joints"});
-  complaint("spacing_m", "spacing", {"bad.ply", "spacing_m"});
-  complaint("0.59999999999999998", "5", {"bad.ply", "length 1"});
+  expect_error("ply\n", "plx\n", {"bad.ply:line 1", "ply"});
+  expect_error("glint robot cloud 1", "made by hand", {"bad.ply", "glint robot cloud 1"});
+  expect_error("binary_little_endian", "ascii", {"bad.ply:line 2", "binary_little_endian"});
+  expect_error("vertex 100", "vertex 101", {"bad.ply", "2600 bytes for 101 points"});
+  expect_error("vertex 100", "vertex 4000000000", {"bad.ply", "a count up to"});
+  expect_error("ushort link", "uint link", {"bad.ply", "ushort link"});
+  expect_error("joint turning 0", "joint turning 1", {"bad.ply", "a count up to 0"});
+  expect_error("joint turning", "joint bending", {"bad.ply", "fixed, turning or sliding"});
+  expect_error("sliding 1 0", "sliding 1 7", {"bad.ply", "input 7"});
+  expect_error("comment input j\n", "", {"bad.ply", "input 0"});
+  expect_error("comment link the ball\n", "", {"bad.ply", "2 links and 2 joints"});
+  expect_error("spacing_m", "spacing", {"bad.ply", "spacing_m"});
+  expect_error("0.59999999999999998", "5", {"bad.ply", "length 1"});
   expect_input_error(
       [&] { (void)read_robot_cloud(files.write("short.ply", good.substr(0, good.size() - 1))); },
       {"short.ply", "2599 bytes"});
@@ -146,13 +146,13 @@ TEST(RobotCloud, RefusesFilesByNameAndLine) {
         (void)read_robot_cloud(files.write("head.ply", good.substr(0, good.find("comment link"))));
       },
       {"head.ply", "end_header"});
-  std::string lies = good;
-  lies.replace(lies.size() - 2, 2, "\x09\x00", 2);  // link index of the last point
-  expect_input_error([&] { (void)read_robot_cloud(files.write("link.ply", lies)); },
+  std::string malformed = good;
+  malformed.replace(malformed.size() - 2, 2, "\x09\x00", 2);  // link index of the last point
+  expect_input_error([&] { (void)read_robot_cloud(files.write("link.ply", malformed)); },
                      {"link.ply", "point 99"});
-  lies = good;
-  lies.replace(lies.size() - k_point_bytes, 4, "\xff\xff\xff\xff");
-  expect_input_error([&] { (void)read_robot_cloud(files.write("nan.ply", lies)); },
+  malformed = good;
+  malformed.replace(malformed.size() - k_point_bytes, 4, "\xff\xff\xff\xff");
+  expect_input_error([&] { (void)read_robot_cloud(files.write("nan.ply", malformed)); },
                      {"nan.ply", "point 99"});
 }
 

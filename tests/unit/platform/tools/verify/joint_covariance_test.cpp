@@ -11,7 +11,8 @@ namespace {
 
 std::vector<Touch> touches_of(const TipSeries& series) {
   std::vector<Touch> touches;
-  for (const Hold& hold : find_holds(series)) touches.push_back(mean_of(series, hold));
+  for (const StaticInterval& interval : find_static_intervals(series))
+    touches.push_back(mean_of(series, interval));
   return touches;
 }
 
@@ -19,7 +20,7 @@ std::vector<Touch> touches_of(const TipSeries& series) {
 TEST(JointCovariance, DriftFadesBetweenTouches) {
   TipSeries series = test::series_of({.touches = 4});
   const std::vector<Touch> touches = touches_of(series);
-  const Eigen::MatrixXd drift = joint_covariance(touches, series.stated, Places::apart);
+  const Eigen::MatrixXd drift = joint_covariance(touches, series.stated, TouchPositions::apart);
   const double variance = 1e-6, correlation_s = series.stated.head.rest_correlation_s;
   EXPECT_NEAR(drift(0, 0), variance, 0.05 * variance);
   for (int j = 1; j < 4; ++j) {
@@ -36,7 +37,8 @@ TEST(JointCovariance, OfAFastProcessIsFinite) {
   TipSeries series = test::series_of({.touches = 2});
   series.stated.head.rest_correlation_s = 1e-4;
   const std::vector<Touch> touches = touches_of(series);
-  const Eigen::MatrixXd covariance = joint_covariance(touches, series.stated, Places::apart);
+  const Eigen::MatrixXd covariance =
+      joint_covariance(touches, series.stated, TouchPositions::apart);
   EXPECT_TRUE(covariance.allFinite());
   EXPECT_LT(covariance(0, 0), 1e-8);
   EXPECT_NEAR(covariance(0, 3), 0, 1e-20);
@@ -47,11 +49,12 @@ TEST(JointCovariance, OfAFastProcessIsFinite) {
 TEST(JointCovariance, TheTipsErrorTurnsWithTheTool) {
   TipSeries series = test::series_of({.touches = 2});
   std::vector<Touch> touches = touches_of(series);
-  const Eigen::MatrixXd without = joint_covariance(touches, series.stated, Places::apart);
+  const Eigen::MatrixXd without = joint_covariance(touches, series.stated, TouchPositions::apart);
   touches[0].mean.rotation = Quaternion(Eigen::AngleAxisd(0.5, Vector3::UnitX()));
   touches[1].mean.rotation = Quaternion(Eigen::AngleAxisd(-0.4, Vector3::UnitX()));
   series.stated.tip_sigma_m = 2e-3;
-  const Eigen::MatrixXd added = joint_covariance(touches, series.stated, Places::apart) - without;
+  const Eigen::MatrixXd added =
+      joint_covariance(touches, series.stated, TouchPositions::apart) - without;
   EXPECT_NEAR((added.topLeftCorner<3, 3>() - 4e-6 * Matrix3::Identity()).norm(), 0, 1e-18);
   const Matrix3 turned = Eigen::AngleAxisd(0.9, Vector3::UnitX()).toRotationMatrix();
   EXPECT_NEAR((added.block<3, 3>(0, 3) - 4e-6 * turned).norm(), 0, 1e-18);
@@ -60,10 +63,10 @@ TEST(JointCovariance, TheTipsErrorTurnsWithTheTool) {
 // Lens residual and range ripple differ between positions: a static tool does not show them.
 TEST(JointCovariance, OfOnePlaceLeavesOutLensAndRipple) {
   TipSeries series = test::series_of({.touches = 2});
-  for (TipSighting& one : series.sightings) one.by_markers.col(0) = Vector3(0, 0, 2);
+  for (TipObservation& one : series.observations) one.by_markers.col(0) = Vector3(0, 0, 2);
   const std::vector<Touch> touches = touches_of(series);
-  const double apart = joint_covariance(touches, series.stated, Places::apart)(2, 2);
-  const double same = joint_covariance(touches, series.stated, Places::same)(2, 2);
+  const double apart = joint_covariance(touches, series.stated, TouchPositions::apart)(2, 2);
+  const double same = joint_covariance(touches, series.stated, TouchPositions::same)(2, 2);
   EXPECT_NEAR(apart - same, 4 * k_range_ripple_m * k_range_ripple_m, 1e-12);
 }
 

@@ -22,16 +22,16 @@ Touch seen(const sim::DeviceErrors& device, const Vector3& moved_marker_m) {
   scenario.noise.blob_pixel_sigma_px = scenario.noise.blob_range_sigma_m = 0;
   sim::LocalisationSettings& head = scenario.localisation;
   head.rest_position_m = head.rest_angle_rad = 0;
-  head.position_per_speed_s = head.position_per_turn_m = 0;
-  head.angle_per_speed_s_m = head.angle_per_turn_s = 0;
+  head.position_per_speed_s = head.position_per_angular_speed_m = 0;
+  head.angle_per_speed_s_m = head.angle_per_angular_speed_s = 0;
   scenario.device = device;
   scenario.device.exists = true;
   scenario.tools[0].tool.markers_m[2] += moved_marker_m;
   const sim::Simulator simulator(scenario);
   RecordedFrames recorded{"simulated", cell, std::make_unique<SimulatedSource>(simulator)};
-  const TipSeries series = sight_tips(recorded, 0);
-  EXPECT_GE(series.sightings.size(), 10u);
-  return mean_of(series, {0, series.sightings.size(), 0.25});
+  const TipSeries series = observe_tips(recorded, 0);
+  EXPECT_GE(series.observations.size(), 10u);
+  return mean_of(series, {0, series.observations.size(), 0.25});
 }
 
 // The tip moves as the sensitivities state if a device or a tool has the error.
@@ -65,9 +65,9 @@ TEST(TipSightings, StateTheDeclaredDriftBesideABody) {
   const auto moving_of = [](bool is_reference) {
     Cell cell = default_cell();
     const int board = cell.tools.count++;
-    cell.tools.items[static_cast<std::size_t>(board)] = reference_board();
+    cell.tools.items[static_cast<std::size_t>(board)] = reference_body();
     sim::Scenario scenario =
-        sim::hand_held_run(cell.camera, {cell.tools.items[0], reference_board()}, 3);
+        sim::hand_held_run(cell.camera, {cell.tools.items[0], reference_body()}, 3);
     sim::lay_on_table(scenario, static_cast<std::size_t>(board));
     scenario.duration = milliseconds(3000);
     scenario.localisation.rest_position_m *= 10;
@@ -76,7 +76,7 @@ TEST(TipSightings, StateTheDeclaredDriftBesideABody) {
     cell.reference = is_reference ? board : -1;
     const sim::Simulator simulator(scenario);
     RecordedFrames recorded{"simulated", cell, std::make_unique<SimulatedSource>(simulator)};
-    return sight_tips(recorded, 0).sightings.back().moving_m2;
+    return observe_tips(recorded, 0).observations.back().motion_covariance_m2;
   };
   const Matrix3 with_body = moving_of(true);
   EXPECT_GT(with_body.trace(), 0);

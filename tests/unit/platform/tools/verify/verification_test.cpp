@@ -8,16 +8,16 @@
 namespace glint::verification_test {
 namespace {
 
-using test::MadeTouches;
+using test::SyntheticTouches;
 
-Verification verified(const MadeTouches& made) {
+Verification verified(const SyntheticTouches& made) {
   return verify_touches(test::series_of(made), {test::k_made_distance_m, 0.0001});
 }
 
 std::vector<ErrorSource> named_of(const Verification& found) {
   std::vector<ErrorSource> named;
   for (const CalibrationFinding& one : found.calibration)
-    if (one.named) named.push_back(one.source);
+    if (one.exceeds_stated) named.push_back(one.source);
   return named;
 }
 
@@ -45,7 +45,7 @@ TEST(Verification, NamesTheCalibrationErrorOfFourSigma) {
 
 // The touches are 4 mm off the point in alternating directions; no stated error explains that.
 TEST(Verification, RefusesTouchesThatDoNotRepeat) {
-  const Verification found = verified({.wander = [](int touch, double) {
+  const Verification found = verified({.drift = [](int touch, double) {
     return touch < 0 ? Vector3::Zero() : Vector3(0.004 * (touch % 2 == 0 ? 1 : -1), 0, 0);
   }});
   EXPECT_FALSE(found.repeatability.agrees);
@@ -62,7 +62,7 @@ TEST(Verification, RefusesAnotherDistance) {
 }
 
 TEST(Verification, RefusesARestThatWanders) {
-  const Verification found = verified({.wander = [](int touch, double seconds) {
+  const Verification found = verified({.drift = [](int touch, double seconds) {
     return touch < 0 ? Vector3(0.004 * std::sin(3 * seconds), 0, 0) : Vector3::Zero();
   }});
   EXPECT_TRUE(found.repeatability.agrees);
@@ -71,13 +71,14 @@ TEST(Verification, RefusesARestThatWanders) {
 }
 
 TEST(Verification, NamesWhatTheRecordingLacks) {
-  const auto lacks = [](const MadeTouches& made, std::initializer_list<const char*> words) {
+  const auto expect_missing = [](const SyntheticTouches& made,
+                                 std::initializer_list<const char*> words) {
     test::expect_input_error([&] { (void)verified(made); }, words);
   };
-  lacks({.touches = 12}, {"made: 8 touches of one point; expected at least 10"});
-  lacks({.distance_m = 0.4}, {"no touch of a second point"});
-  lacks({.lean_rad = 0.02}, {"the touches are alike", "lean the tool"});
-  lacks({.rest_s = 9}, {"the tool rests for", "expected 20 s"});
+  expect_missing({.touches = 12}, {"made: 8 touches of one point; expected at least 10"});
+  expect_missing({.distance_m = 0.4}, {"no touch of a second point"});
+  expect_missing({.lean_rad = 0.02}, {"the touches are alike", "lean the tool"});
+  expect_missing({.rest_s = 9}, {"the tool rests for", "expected 20 s"});
 }
 
 // If an error makes the tracker lose the tool, the residuals of its fits identify the error.
@@ -85,15 +86,15 @@ TEST(Verification, TakesFitsAloneWhereTouchesLack) {
   TipSeries series = test::series_of({.touches = 3});
   series.residuals.fits = 30;
   series.residuals.information(0, 0) = 20;
-  series.residuals.pull(0) = 4 * 20;
+  series.residuals.information_vector(0) = 4 * 20;
   const Verification found = verify_touches(series, {test::k_made_distance_m, 0.0001});
   EXPECT_FALSE(found.agrees);
   EXPECT_EQ(named_of(found), std::vector<ErrorSource>{ErrorSource::range});
-  EXPECT_NE(found.lacks.find("2 touches"), std::string::npos);
+  EXPECT_NE(found.missing.find("2 touches"), std::string::npos);
 }
 
 TEST(Verification, ListsWhatItDoesNotShow) {
-  const std::vector<std::string> lines = not_shown(verified({}));
+  const std::vector<std::string> lines = not_covered(verified({}));
   const auto has = [&](const char* words) {
     return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
       return line.find(words) != std::string::npos;
