@@ -25,6 +25,12 @@ struct DeviceErrors {
   double range_wiggle_m = 0;  // amplitude; one period each k_wiggle_period_m of range
   // Of each marker, rms: a sum of slow oscillations, k_slowest_hz to k_fastest_hz.
   double correlated_range_m = 0, correlated_centroid_px = 0;
+  double dim_m = 0;  // range error of a marker with k_reference_counts, as DepthBias::dim_m
+  // Optical errors (stray_light.hpp): share of the light that each of four neighbours, the halo and
+  // all pixels together receive.
+  double spread_share = 0, halo_share = 0, stray_share = 0;
+  double stray_detour_m = 0;  // additional path of stray light, as range
+  int hot_pixels = 0;
   std::uint64_t seed = 0;
 };
 inline constexpr double k_wiggle_period_m = 0.26;  // a quarter of AHAT's wrap

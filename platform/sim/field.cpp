@@ -14,6 +14,11 @@ namespace {
 constexpr double k_lens_residual_px = 0.1;
 constexpr double k_wiggle_m = 0.001;
 constexpr double k_radius_sigma_m = 0.0001;
+constexpr double k_dim_sigma_m = 0.002;                      // of a marker's range, at 1,000 counts
+constexpr double k_spread_share = 0.14, k_halo_share = 0.2;  // of HoloLens 2: stray_light.hpp
+constexpr double k_stray_share_max = 0.02, k_detour_min_m = 0.1, k_detour_max_m = 0.5;
+constexpr double k_hot_pixels_max = 30;
+constexpr double k_grip_shift_max_m = 0.05;  // along the shaft, from held_tool's grip
 constexpr double k_head_sigma_s = 0.005;
 constexpr std::uint64_t k_calibrating_hand = 1000;  // its motion is another than that of work
 const Vector3 k_put_away_m{-2, 0, 0};               // behind the headset
@@ -76,7 +81,32 @@ void add_events(Draws& draws, double duration_s, Scenario& scenario) {
   const auto begin = [&](double length_s) { return draws.between(1, duration_s - length_s); };
   scenario.timing.slow.push_back(interval(begin(4), 4));
   scenario.occlusions.push_back({interval(begin(1), 1), 0, 0.09, 0.6});
-  scenario.absences.push_back({interval(begin(3), 3), 0, Vector3(0, 0, -1.2), k_lay_down_s});
+  const double laid_down_s = begin(3);
+  scenario.absences.push_back({interval(laid_down_s, 3), 0, Vector3(0, 0, -1.2), k_lay_down_s});
+  // A HoloLens 2 that sees no hand gives 5 frames a second.
+  scenario.timing.slow.push_back(interval(laid_down_s + k_lay_down_s, 3 - 2 * k_lay_down_s));
+}
+
+// Optical errors of this device.
+void draw_light(Draws& draws, DeviceErrors& errors) {
+  errors.dim_m = k_dim_sigma_m * draws.normal();
+  errors.spread_share = k_spread_share;
+  errors.halo_share = k_halo_share;
+  errors.stray_share = draws.between(0, k_stray_share_max);
+  errors.stray_detour_m = draws.between(k_detour_min_m, k_detour_max_m);
+  errors.hot_pixels = static_cast<int>(draws.between(0, k_hot_pixels_max));
+}
+
+// Shifts the hand along the shaft, so that it occludes markers from some sides. Part 0 is the
+// shaft, all others are the hand.
+void shift_grip(double metres, ToolBody& body) {
+  if (body.parts.size() < 2) return;
+  const Capsule& shaft = body.parts.front();
+  const Vector3 up = (shaft.b - shaft.a).normalized();
+  for (std::size_t i = 1; i < body.parts.size(); ++i) {
+    body.parts[i].a += metres * up;
+    body.parts[i].b += metres * up;
+  }
 }
 
 HandSettings calibrating_hand(FieldTask task) {
@@ -135,6 +165,8 @@ Scenario field_run(const Camera& camera, const std::vector<Tool>& tools,
   const Vector3 turn = robot.sigma_rad * draws.vector();
   const Pose off{from_rotation_vector(turn), robot.sigma_m * draws.vector()};
   head.T_stated_world = robot.T_world_robot * off * robot.T_world_robot.inverse();
+  draw_light(draws, scenario.device);
+  for (ToolBody& body : scenario.tools) shift_grip(draws.between(0, k_grip_shift_max_m), body);
   if (task == FieldTask::work) {
     add_events(draws, duration_s, scenario);
   } else {

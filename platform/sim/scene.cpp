@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "kernels/pose/depth_bias.hpp"
 #include "platform/sim/capsule.hpp"
 #include "platform/sim/random.hpp"
 
@@ -36,7 +37,9 @@ void disturb(const Scenario& scenario, std::uint64_t sequence, Time time, Reflec
     const MarkerError error =
         marker_error(scenario.device, pixel.value, {model.cx, model.cy}, range, number, time);
     moved += error.shift_px;
-    reflector.range_error_m += error.range_m;
+    const double counts = reflector.signal * (0.25 / (range * range));
+    reflector.range_error_m +=
+        error.range_m + scenario.device.dim_m * (DepthBias::k_reference_counts / counts);
   }
   const Result<Vector3> ray = unproject(scenario.camera.model, moved);
   if (ray) reflector.centre = range * ray.value.normalized();

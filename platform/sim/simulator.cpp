@@ -7,6 +7,7 @@
 #include "platform/sim/room_drawer.hpp"
 #include "platform/sim/scene.hpp"
 #include "platform/sim/sensor.hpp"
+#include "platform/sim/stray_light.hpp"
 #include "platform/sim/visibility.hpp"
 
 namespace glint::sim {
@@ -104,6 +105,7 @@ void Simulator::render(int i, SimFrame& out) const {
         draw(scene.reflectors[k], model, parts.rays, capsules, planes);
   }
   find_visible(parts.scenario.camera, scene, drawn, out.truth.visible_mask);
+  if (parts.scenario.device.exists) add_stray_light(parts.scenario.device, out.spread, planes);
   parts.sensor.expose(planes, parts.rays, out.sequence, out.pixels);
 }
 

@@ -26,7 +26,7 @@ struct SimFrame {
   HeadPose head;  // by the drifting localisation, at the stamp
   FrameGroundTruth truth;
   std::vector<Pose> reference;  // T_reference_tool, each tool
-  Planes scratch;
+  Planes scratch, spread;
 
   [[nodiscard]] Frame view() const { return pixels.view(mid_exposure, arrival, sequence); }
 };

@@ -95,7 +95,11 @@ void add_experiment(CLI::App& app, int& exit_code) {
                 arguments, exit_code);
   for (const CaseExperiment& experiment : case_experiments()) {
     CLI::App& sub = add_one(*command, experiment.name, experiment.what, arguments);
-    if (experiment.needs_data) {
+    if (experiment.data == DataFolder::optional) {
+      sub.add_option("--data", arguments->data,
+                     "folder of the recordings; adds a real frame as background");
+    }
+    if (experiment.data == DataFolder::required) {
       sub.add_option("--data", arguments->data, "folder of the recordings")->required();
       sub.footer(std::string("Example: glint experiment ") + experiment.name + " --data DIR");
     }

@@ -10,6 +10,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/lab/experiments/clutter_scene.hpp"
 #include "platform/lab/experiments/point_view.hpp"
+#include "platform/lab/experiments/recordings.hpp"
 #include "platform/runtime/session/accuracy.hpp"
 #include "platform/runtime/session/pipeline.hpp"
 #include "platform/sim/simulator.hpp"
@@ -118,12 +119,22 @@ std::vector<AcquisitionCase> acquisition_cases() {
           {"3,000 bright pixels in one place", 1, 0, texture, false}};
 }
 
+std::vector<AcquisitionCase> real_frame_cases(const std::string& data) {
+  const sim::BackgroundFrame frame = load_hands_and_drill(data);
+  return {{"before a real frame, threshold 250", 1, 0, {}, true, 250, frame},
+          {"before a real frame, threshold 400", 1, 0, {}, true, 400, frame}};
+}
+
 std::vector<Acquisition> acquire(const AcquisitionCase& one, int frames, std::uint64_t seed) {
   ToolSet tools = five_tools(seed);
   tools.count = one.tools;
-  const sim::Simulator simulator(cluttered_run(tools, one.strays, frames, seed));
+  sim::Scenario scenario = cluttered_run(tools, one.strays, frames, seed);
+  scenario.background = one.background;
+  const sim::Simulator simulator(std::move(scenario));
   Cell cell = default_cell();
   set_camera(cell, simulator.scenario().camera);
+  if (one.threshold > 0) cell.camera.threshold = static_cast<std::uint16_t>(one.threshold);
+  set_camera(cell, cell.camera);
   cell.tools = tools;
   const auto tracker = std::make_unique<Tracker>();
   configure(cell, *tracker);
@@ -151,7 +162,10 @@ std::vector<Acquisition> acquire(const AcquisitionCase& one, int frames, std::ui
 
 CaseList run_acquisition(const CaseOptions& options) {
   CaseList list{"acquire", {}, {}};
-  const std::vector<AcquisitionCase> cases = acquisition_cases();
+  std::vector<AcquisitionCase> cases = acquisition_cases();
+  if (!options.data.empty()) {
+    for (AcquisitionCase& one : real_frame_cases(options.data)) cases.push_back(std::move(one));
+  }
   for (std::size_t k = 0; k < cases.size(); ++k) {
     list.cases.push_back(judged(cases[k], options));
     if (options.progress) options.progress(static_cast<int>(k) + 1, static_cast<int>(cases.size()));

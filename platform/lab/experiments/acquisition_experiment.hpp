@@ -3,11 +3,12 @@
 //
 // A cell as built in, 64 blobs, tools in moving hands, nothing tracked before the first frame; each
 // case with other random seeds. Spots are the simulator's stray balls, or painted into the frames
-// (painted_spots.hpp). A tool's frame counts with three or more of its markers visible by the
-// simulator's rule; fresh: this frame gave an accepted pose; gross: the tip is more than 20 mm or
-// the orientation more than 15 degrees off. `found_after` is the longest of all tools and random
-// seeds from the first frame with four visible markers to the first fresh one; `fresh` is the least
-// share from there on.
+// (painted_spots.hpp); with data, a real frame of hands and a drill stands behind the tool, which
+// is to be found and nothing else. A tool's frame counts with three or more of its markers visible
+// by the simulator's rule; fresh: this frame gave an accepted pose; gross: the tip is more than 20
+// mm or the orientation more than 15 degrees off. `found_after` is the longest of all tools and
+// random seeds from the first frame with four visible markers to the first fresh one; `fresh` is
+// the least share from there on.
 #pragma once
 
 #include <array>
@@ -19,6 +20,7 @@
 #include "kernels/reason.hpp"
 #include "platform/lab/experiments/case_list.hpp"
 #include "platform/lab/experiments/painted_spots.hpp"
+#include "platform/sim/room.hpp"
 
 namespace glint {
 
@@ -28,9 +30,13 @@ struct AcquisitionCase {
   int strays = 0;  // of the simulator
   SpotSettings spots;
   bool judged = true;  // false: shows where the method ends
+  int threshold = 0;   // 0: the cell's
+  sim::BackgroundFrame background = {};
 };
 
 [[nodiscard]] std::vector<AcquisitionCase> acquisition_cases();
+// Before a real frame, at thresholds that its hands and drill exceed. Throws InputError.
+[[nodiscard]] std::vector<AcquisitionCase> real_frame_cases(const std::string& data);
 
 // Of one tool in one run.
 struct Acquisition {

@@ -8,10 +8,13 @@
 
 namespace glint {
 
+// Whether an experiment reads recordings: --data DIR.
+enum class DataFolder { none, optional, required };
+
 struct CaseExperiment {
-  const char* name;         // name of the subcommand
-  const char* what;         // one line of help
-  bool needs_data = false;  // needs recordings: --data DIR
+  const char* name;  // name of the subcommand
+  const char* what;  // one line of help
+  DataFolder data = DataFolder::none;
   CaseList (*run)(const CaseOptions& options) = nullptr;
   bool accepts_tries = false;  // accepts --tries N
 };

@@ -9,6 +9,7 @@
 #include "kernels/angles.hpp"
 #include "platform/lab/experiments/field_calibration.hpp"
 #include "platform/lab/experiments/field_runs.hpp"
+#include "platform/lab/experiments/recordings.hpp"
 #include "platform/runtime/session/simulated_run.hpp"
 #include "platform/sources/scenario_of.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr int k_field_seeds = 40, k_field_seeds_quick = 2;
 constexpr CalibrationSeconds k_quick_calibrations{8, 20, 20, 30, 25};
 constexpr double k_duration_s = 30, k_duration_quick_s = 8;
+constexpr std::uint64_t k_real_background = 4;  // of so many devices one
 constexpr double k_coverage_min = 88, k_sharpness_max = 3;
 constexpr double k_seed_coverage_low = 80;
 
@@ -41,18 +43,17 @@ void build_exactly(const Cell& cell, sim::Scenario& scenario) {
 void correct_all(sim::Scenario& scenario, Cell& cell) {
   const sim::LocalisationSettings drawn = scenario.localisation, declared;
   const double drift = drawn.rest_position_m / declared.rest_position_m;
-  sim::DeviceErrors slow;
-  slow.exists = true;
-  slow.correlated_range_m = scenario.device.correlated_range_m;
-  slow.correlated_centroid_px = scenario.device.correlated_centroid_px;
-  slow.seed = scenario.device.seed;
+  sim::DeviceErrors left = scenario.device;
+  left.principal_point_px = Vector2::Zero();
+  left.focal_scale = left.lens_residual_px = 0;
+  left.range_offset_m = left.range_scale = left.range_wiggle_m = left.dim_m = 0;
   const CameraUncertainty shipped = cell.camera.uncertainty;
   state_exactly(cell);
   cell.camera.uncertainty.correlated_range_m = shipped.correlated_range_m;
   cell.camera.uncertainty.correlated_centroid_px = shipped.correlated_centroid_px;
   cell.camera.uncertainty.fast_share = shipped.fast_share;
   build_exactly(cell, scenario);
-  scenario.device = slow;
+  scenario.device = left;
   scenario.localisation = drawn;
   scenario.localisation.latency_s = 0;
   scenario.localisation.T_stated_world.reset();
@@ -197,7 +198,7 @@ Cell field_cell(std::uint64_t seed, double duration_s) {
 }
 
 SessionResult run_field_device(FieldDevice device, std::uint64_t seed, double duration_s,
-                               const std::string& out) {
+                               const std::string& out, const sim::BackgroundFrame& background) {
   const Cell drawn = field_cell(seed, duration_s);
   Cell cell = drawn;
   sim::Scenario scenario = scenario_of(drawn);
@@ -211,6 +212,7 @@ SessionResult run_field_device(FieldDevice device, std::uint64_t seed, double du
     build_exactly(cell, scenario);
     state_exactly(cell);
   }
+  scenario.background = background;
   SessionOptions options;
   options.out = out;
   return run_simulated(cell, std::move(scenario), options);
@@ -225,17 +227,20 @@ CaseList run_field(const CaseOptions& options) {
   const std::vector<FieldDevice> devices =
       calibrated ? std::vector{FieldDevice::calibrated, FieldDevice::oracle}
                  : std::vector{FieldDevice::drawn, FieldDevice::exact};
+  sim::BackgroundFrame real, room;
+  if (!options.data.empty()) real = load_hands_and_drill(options.data);
   FinishedRuns finished(options.out + "/field_runs.txt");
   std::vector<Tally> tallies(devices.size());
   int done = 0;
   for (int i = 0; i < seeds; ++i) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+    const sim::BackgroundFrame& background = seed % k_real_background == 0 ? real : room;
     for (std::size_t d = 0; d < devices.size(); ++d) {
       const FieldRun* run = calibrated ? finished.find(devices[d], seed, duration_s) : nullptr;
       FieldRun fresh;
       if (run == nullptr) {
         fresh = run_of(devices[d], seed, duration_s,
-                       run_field_device(devices[d], seed, duration_s, options.out));
+                       run_field_device(devices[d], seed, duration_s, options.out, background));
         run = calibrated ? &finished.add(fresh) : &fresh;
       }
       tallies[d].add(*run);

@@ -5,7 +5,7 @@
 // Correspondence with the gate of the declared noise, then the weighted fit of every labeling kept,
 // decided by chi-square; beside it the labeling and the pose of the least unweighted rms. Found: a
 // pose is called measured. Wrong: with a wrong marker assignment. Gross: as is_gross() of
-// platform/runtime/session/gross.hpp defines it.
+// platform/runtime/session/gross.hpp defines it. Last rows: the shipped graph (noise_graph.hpp).
 #pragma once
 
 #include "platform/lab/experiments/case_list.hpp"

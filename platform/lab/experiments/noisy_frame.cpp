@@ -41,9 +41,15 @@ Vector3 draw_stray(const NoisyFrame& frame, const Vector3& middle, const Tool& t
 
 void draw_frame(const NoisyScene& scene, const Camera& camera, SampleNumbers& numbers,
                 NoisyFrame& frame) {
-  const Tool& tool = scene.tool.tool;
   const double tilt = k_radians_per_degree * numbers.within(0, k_tilt_most_deg);
-  frame.truth = draw_pose(scene.tool, k_range_m, tilt, numbers).T_camera_tool;
+  draw_frame(scene, camera, draw_pose(scene.tool, k_range_m, tilt, numbers).T_camera_tool, numbers,
+             frame);
+}
+
+void draw_frame(const NoisyScene& scene, const Camera& camera, const Pose& T_camera_tool,
+                SampleNumbers& numbers, NoisyFrame& frame) {
+  const Tool& tool = scene.tool.tool;
+  frame.truth = T_camera_tool;
   const Vector3 mean = marker_mean(tool);
   frame.view.clear();
   for (int i = 0; i < tool.marker_count; ++i) {

@@ -22,5 +22,8 @@ struct NoisyFrame {
 // half a metre around it, but where their images touch another's, for that would be one blob.
 void draw_frame(const NoisyScene& scene, const Camera& camera, SampleNumbers& numbers,
                 NoisyFrame& frame);
+// The same with this pose of the tool.
+void draw_frame(const NoisyScene& scene, const Camera& camera, const Pose& T_camera_tool,
+                SampleNumbers& numbers, NoisyFrame& frame);
 
 }  // namespace glint

@@ -1,11 +1,13 @@
-// Recorded motions that experiments predict: public benchmarks, by file name.
+// Recorded motions (public benchmarks) and a real frame that experiments read, by file name.
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "platform/formats/trajectory.hpp"
 #include "platform/lab/experiments/case_list.hpp"
+#include "platform/sim/room.hpp"
 
 namespace glint {
 
@@ -22,5 +24,10 @@ inline constexpr std::array<Recording, 4> k_recordings = {
 // From options.data, in that order; --quick: their first ten seconds. Throws InputError with the
 // first file that is missing or bad.
 [[nodiscard]] std::vector<Trajectory> load_recordings(const CaseOptions& options);
+
+// A HoloLens 2's frame of two hands, a chromed drill and a table, 512 x 512, no tool in it:
+// hl2_real/ahat_ab_hands_drill.png. It was published without depth: 0.6 m in each pixel. Throws
+// InputError.
+[[nodiscard]] sim::BackgroundFrame load_hands_and_drill(const std::string& data);
 
 }  // namespace glint

@@ -1,7 +1,9 @@
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 
+#include "kernels/pose/candidates.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/input_error.hpp"
@@ -111,11 +113,18 @@ BlobSeries recorded_blobs(RecordedFrames& recorded, const std::string& tool) {
 std::vector<PointFrame> recorded_points(RecordedFrames& recorded, const Tool& kind,
                                         std::vector<std::string>& failures) {
   set_only_tool(recorded.cell, placeholder_tool(kind));
+  CorrespondSettings settings;
+  settings.focal_px = recorded.cell.camera.model.fx;
+  settings.range_min_m = recorded.cell.camera.range_min_m;
+  settings.range_max_m = recorded.cell.camera.range_max_m;
+  const auto candidates = std::make_unique<Candidates>();
   std::vector<PointFrame> frames;
   TrackedFrames tracked = track_frames(
       recorded, Search::everywhere, [&](const ArrivedFrame& arrived, Tracker& tracker) {
-        PointFrame frame{arrived.frame.mid_exposure,
-                         marker_centres(tracker.token<Markers>(), kind)};
+        // Rejects hot pixels by area and range.
+        (void)select_candidates(tracker.token<Markers>(), kind, settings, nullptr, *candidates);
+        const auto begin = candidates->point_m.begin();
+        PointFrame frame{arrived.frame.mid_exposure, {begin, begin + candidates->count}};
         if (!frame.points_m.empty()) frames.push_back(std::move(frame));
       });
   failures = std::move(tracked.failures);
