@@ -15,10 +15,11 @@
 #include <vector>
 
 #include "platform/apps/glint/cell_option.hpp"
-#include "platform/apps/glint/commands.hpp"
+#include "platform/apps/glint/lab_program.hpp"
 #include "platform/apps/glint/output_file.hpp"
 #include "platform/apps/glint/planned_run.hpp"
 #include "platform/apps/glint/progress.hpp"
+#include "platform/apps/glint/run_commands.hpp"
 #include "platform/apps/glint/run_output.hpp"
 #include "platform/apps/glint/run_report.hpp"
 #include "platform/cells/cell.hpp"
@@ -52,6 +53,7 @@ struct RunArguments {
   bool recorded = false;  // glint track
   std::string source, kind;
   ReadTolerance tolerance;
+  BaselineFactory baseline;
 };
 
 Cell cell_of(const RunArguments& arguments) {
@@ -64,7 +66,7 @@ Cell cell_of(const RunArguments& arguments) {
   if (arguments.workers > 0) cell.workers = arguments.workers;
   if (arguments.as_fast_as_can_be) cell.realtime = false;
   if (arguments.no_dds) cell.dds.on = false;
-  if (arguments.method == "seed") {
+  if (arguments.method != "glint") {
     cell.method = Method::baseline;
     cell.record.level = "outputs";  // a run of the baseline cannot be replayed
   }
@@ -112,6 +114,7 @@ int report(const Cell& cell, const SessionOptions& options, const std::string& j
 
 int run(const RunArguments& arguments) {
   Cell cell = cell_of(arguments);
+  if (cell.method == Method::baseline && !arguments.baseline) start_lab();
   const std::atomic<bool>& stop = stop_on_signals();
   const auto duration_ns = static_cast<std::int64_t>(std::llround(arguments.duration_s * 1e9));
   const std::unique_ptr<FrameSource> source =
@@ -122,6 +125,7 @@ int run(const RunArguments& arguments) {
     options.injections.push_back(injection_of(text));
   }
   options.trace = arguments.trace;
+  options.method = arguments.baseline;
   options.stop = &stop;
   std::optional<KeyTerminal> terminal;
   open_key_terminal(arguments, cell, terminal);
@@ -160,16 +164,17 @@ void add_common(CLI::App& command, RunArguments& arguments) {
       ->check(in_range(1, 2));
   command
       .add_option("--method", arguments.method,
-                  "glint, or seed: the method as published, the baseline")
-      ->check(CLI::IsMember({"glint", "seed"}));
+                  "glint, or baseline: the published method (formerly seed)")
+      ->check(CLI::IsMember({"glint", "baseline", "seed"}));
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, int& exit_code) {
+void add_run(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
   CLI::App* command =
       app.add_subcommand("run", "Track: frames in, poses out over DDS and CAN, recorded");
   auto arguments = std::make_shared<RunArguments>();
+  arguments->baseline = baseline;
   command->footer(
       "Examples:\n  glint run --out out --json out/summary.json\n"
       "  glint run --config my_cell.toml --can socketcan:can0\n"
@@ -199,11 +204,12 @@ void add_run(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-void add_track(CLI::App& app, int& exit_code) {
+void add_track(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
   CLI::App* command = app.add_subcommand(
       "track", "Track recorded frames as fast as possible: poses, CAN log, plots");
   auto arguments = std::make_shared<RunArguments>();
   arguments->recorded = arguments->as_fast_as_can_be = true;
+  arguments->baseline = baseline;
   command->footer(
       "Examples:\n  glint track sim/frames.mcap --out again\n"
       "  glint track frames --config my_cell.toml --json poses.json\n"

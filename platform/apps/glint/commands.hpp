@@ -6,11 +6,8 @@
 
 namespace glint {
 
-void add_run(CLI::App& app, int& exit_code);
-void add_track(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
-void add_experiment(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void add_map(CLI::App& app, int& exit_code);

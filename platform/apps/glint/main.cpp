@@ -1,8 +1,23 @@
 // glint COMMAND: main program of the tracker and its tools.
 #include "platform/apps/glint/cell_option.hpp"
 #include "platform/apps/glint/commands.hpp"
+#include "platform/apps/glint/lab_program.hpp"
+#include "platform/apps/glint/run_commands.hpp"
 #include "platform/apps/glint/version.hpp"
 #include "platform/exit_code.hpp"
+
+namespace {
+
+// The words after `experiment` are glint_lab's, --help among them.
+void add_experiment(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "experiment", "How good the estimates are, beside the published method and other rivals");
+  command->prefix_command();
+  command->set_help_flag();
+  command->callback([] { glint::start_lab(); });
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Glint: the pose of a pen with reflective markers, from a headset's camera"};
@@ -14,7 +29,7 @@ int main(int argc, char** argv) {
   glint::add_track(app, exit_code);
   glint::add_replay(app, exit_code);
   glint::add_simulate(app, exit_code);
-  glint::add_experiment(app, exit_code);
+  add_experiment(app);
   glint::add_calibrate(app, exit_code);
   glint::add_verify(app, exit_code);
   glint::add_map(app, exit_code);

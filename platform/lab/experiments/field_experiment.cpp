@@ -229,7 +229,9 @@ CaseList run_field(const CaseOptions& options) {
                  : std::vector{FieldDevice::drawn, FieldDevice::exact};
   sim::BackgroundFrame real, room;
   if (!options.data.empty()) real = load_hands_and_drill(options.data);
-  FinishedRuns finished(options.out + "/field_runs.txt");
+  // Runs before the real frame are other runs.
+  FinishedRuns finished(options.out +
+                        (real.range_m.empty() ? "/field_runs.txt" : "/field_runs_real.txt"));
   std::vector<Tally> tallies(devices.size());
   int done = 0;
   for (int i = 0; i < seeds; ++i) {

@@ -1,9 +1,7 @@
 #include "platform/runtime/session/simulated_run.hpp"
 
-#include <memory>
 #include <utility>
 
-#include "platform/lab/baseline/seed_method.hpp"
 #include "platform/sources/scenario_of.hpp"
 #include "platform/sources/simulated_source.hpp"
 #include "platform/tools/mapping/depth_png.hpp"
@@ -11,7 +9,6 @@
 namespace glint {
 
 SessionOptions with_desktop_parts(SessionOptions options) {
-  options.method = [](const Cell& of) { return std::make_unique<BaselineMethod>(of); };
   options.read_png = read_depth_png;
   return options;
 }

@@ -1,5 +1,4 @@
-// Run on simulated frames, with the simulator's additional dependencies: the baseline method and
-// PNG images.
+// Run on simulated frames, with the simulator's additional dependency: PNG images.
 #pragma once
 
 #include "platform/runtime/session/session.hpp"
@@ -7,7 +6,7 @@
 
 namespace glint {
 
-// Adds what only a desktop has: the baseline method, and depth images as PNG.
+// Adds what only a desktop has: depth images as PNG.
 [[nodiscard]] SessionOptions with_desktop_parts(SessionOptions options);
 
 // Runs the scenario of the cell, or the given one (its camera is the cell's). The source needs

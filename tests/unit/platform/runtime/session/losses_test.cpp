@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <vector>
 
+#include "platform/lab/baseline/seed_method.hpp"
 #include "platform/runtime/session/loss_watch.hpp"
 #include "platform/runtime/session/sent_ticks.hpp"
 #include "tests/unit/platform/runtime/session/short_run.hpp"
@@ -246,7 +248,10 @@ TEST(SeedMethod, GivesPosesInASession) {
   const TemporaryFolder folder;
   Cell cell = short_cell(1, "outputs");
   cell.method = Method::baseline;
-  const SessionResult run = short_run(cell, folder.path());
+  SessionOptions options;
+  options.out = folder.path();
+  options.method = [](const Cell& of) { return std::make_unique<BaselineMethod>(of); };
+  const SessionResult run = run_simulated(cell, options);
   EXPECT_GT(run.accuracy.poses, run.frames / 2);
   EXPECT_GT(run.sent.tools[0].measured, run.sent.ticks / 2);
 }

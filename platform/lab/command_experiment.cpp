@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "platform/apps/glint/commands.hpp"
 #include "platform/apps/glint/output_file.hpp"
 #include "platform/apps/glint/progress.hpp"
 #include "platform/in_range.hpp"
+#include "platform/lab/command_experiment.hpp"
 #include "platform/lab/experiments/case_experiments.hpp"
 #include "platform/lab/experiments/experiment.hpp"
 #include "platform/lab/experiments/experiment_report.hpp"

@@ -1,0 +1,11 @@
+// `glint experiment`, a command of glint_lab.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace glint {
+
+// Exit code: 0 every bar is met, 1 one is missed, 2 bad use.
+void add_experiment(CLI::App& app, int& exit_code);
+
+}  // namespace glint

@@ -1,0 +1,28 @@
+// glint_lab COMMAND: the experiments, and runs of the baseline method. `glint` starts it.
+#include <memory>
+
+#include "platform/apps/glint/cell_option.hpp"
+#include "platform/apps/glint/run_commands.hpp"
+#include "platform/apps/glint/version.hpp"
+#include "platform/exit_code.hpp"
+#include "platform/lab/baseline/seed_method.hpp"
+#include "platform/lab/command_experiment.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Glint's lab: experiments, and the published method in place of the tracker"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", glint::version_text(), "version and commit");
+  app.footer("Example: glint experiment static --json static.json");
+  int exit_code = 0;
+  const auto baseline = [](const glint::Cell& cell) {
+    return std::make_unique<glint::BaselineMethod>(cell);
+  };
+  glint::add_run(app, exit_code, baseline);
+  glint::add_track(app, exit_code, baseline);
+  glint::add_experiment(app, exit_code);
+  glint::add_cell_check(app);
+  return glint::exit_code_of(app, "glint", [&] {
+    app.parse(argc, argv);
+    return exit_code;
+  });
+}
