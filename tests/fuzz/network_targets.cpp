@@ -7,7 +7,7 @@
 
 #include "kernels/wire/can_decode.hpp"
 #include "platform/sinks/can/button_frames.hpp"
-#include "platform/sinks/dds/heard.hpp"
+#include "platform/sinks/dds/received_messages.hpp"
 #include "platform/sinks/dds/topic_types.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

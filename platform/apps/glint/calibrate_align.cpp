@@ -5,7 +5,7 @@
 #include "platform/apps/glint/calibrate_commands.hpp"
 #include "platform/in_range.hpp"
 #include "platform/tools/calibrate/align.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 
 namespace glint {
 namespace {

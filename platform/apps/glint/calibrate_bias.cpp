@@ -4,7 +4,7 @@
 #include "platform/apps/glint/calibrate_commands.hpp"
 #include "platform/tools/calibrate/alignment_file.hpp"
 #include "platform/tools/calibrate/bias.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 
 namespace glint {
 namespace {

@@ -12,8 +12,8 @@
 #include "platform/input_error.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/tools/calibrate/board.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/lens_fit.hpp"
-#include "platform/tools/calibrate/say.hpp"
 #include "platform/tools/inspect/recorded_frames.hpp"
 
 namespace glint {

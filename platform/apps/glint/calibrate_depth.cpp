@@ -9,7 +9,7 @@
 #include "platform/cells/tool_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/depth.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 
 namespace glint {
 namespace {

@@ -6,8 +6,8 @@
 #include "platform/apps/glint/calibrate_commands.hpp"
 #include "platform/apps/glint/progress.hpp"
 #include "platform/in_range.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/motion.hpp"
-#include "platform/tools/calibrate/say.hpp"
 
 namespace glint {
 namespace {

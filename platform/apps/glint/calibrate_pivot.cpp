@@ -8,8 +8,8 @@
 #include "platform/cells/tool_writer.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/pivot.hpp"
-#include "platform/tools/calibrate/say.hpp"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 #include "platform/apps/glint/calibrate_commands.hpp"
 #include "platform/cells/tool_writer.hpp"
 #include "platform/in_range.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/spin.hpp"
 
 namespace glint {

@@ -11,7 +11,7 @@
 #include "platform/cells/tool_writer.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/tool_geometry.hpp"
 #include "platform/tools/inspect/recorded_frames.hpp"
 

@@ -17,7 +17,7 @@
 #include "kernels/robot/forward_kinematics.hpp"
 #include "kernels/units.hpp"
 #include "nodes/extend_map.hpp"
-#include "platform/sinks/dds/heard.hpp"
+#include "platform/sinks/dds/received_messages.hpp"
 #include "platform/tools/robot/robot_cloud.hpp"
 
 namespace glint {

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "graph/latest.hpp"
-#include "platform/sinks/dds/heard.hpp"
 #include "platform/sinks/dds/participant.hpp"
+#include "platform/sinks/dds/received_messages.hpp"
 #include "platform/sinks/record/button_event.hpp"
 
 namespace glint {

@@ -7,8 +7,8 @@
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/align_refine.hpp"
 #include "platform/tools/calibrate/align_start.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/robust.hpp"
-#include "platform/tools/calibrate/say.hpp"
 #include "platform/tools/calibrate/smooth_series.hpp"
 
 namespace glint {

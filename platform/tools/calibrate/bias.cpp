@@ -8,8 +8,8 @@
 #include "kernels/motion/motion_state.hpp"
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/correlation.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/robust.hpp"
-#include "platform/tools/calibrate/say.hpp"
 
 namespace glint {
 namespace {

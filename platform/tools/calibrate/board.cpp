@@ -10,7 +10,7 @@
 #include "platform/formats/picture_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/board_lens.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 
 namespace glint {
 namespace {

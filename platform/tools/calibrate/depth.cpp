@@ -5,7 +5,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/depth_refine.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 
 namespace glint {
 namespace {

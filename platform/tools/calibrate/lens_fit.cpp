@@ -9,7 +9,7 @@
 #include "kernels/calibrate/lens_residual.hpp"
 #include "platform/formats/npy.hpp"
 #include "platform/input_error.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 
 namespace glint {
 namespace {

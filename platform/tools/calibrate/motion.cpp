@@ -7,8 +7,8 @@
 #include "kernels/motion/tool_motion.hpp"
 #include "platform/input_error.hpp"
 #include "platform/sim/random.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/motion_fit.hpp"
-#include "platform/tools/calibrate/say.hpp"
 
 namespace glint {
 namespace {

@@ -8,7 +8,7 @@
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/weighted_marker.hpp"
 #include "platform/input_error.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 
 namespace glint {
 namespace {

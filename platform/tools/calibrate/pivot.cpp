@@ -6,10 +6,10 @@
 #include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/correlation.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/pivot_linear.hpp"
 #include "platform/tools/calibrate/pivot_refine.hpp"
 #include "platform/tools/calibrate/robust.hpp"
-#include "platform/tools/calibrate/say.hpp"
 
 namespace glint {
 namespace {

@@ -6,8 +6,8 @@
 #include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/correlation.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/robust.hpp"
-#include "platform/tools/calibrate/say.hpp"
 #include "platform/tools/calibrate/spin_refine.hpp"
 
 namespace glint {

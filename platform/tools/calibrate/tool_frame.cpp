@@ -8,8 +8,8 @@
 #include "kernels/pose/rigid_fit.hpp"
 #include "platform/dense.hpp"
 #include "platform/input_error.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/frame_labels.hpp"
-#include "platform/tools/calibrate/say.hpp"
 
 namespace glint {
 namespace {

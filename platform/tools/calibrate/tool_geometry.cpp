@@ -8,9 +8,9 @@
 
 #include "platform/dense.hpp"
 #include "platform/input_error.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/frame_labels.hpp"
 #include "platform/tools/calibrate/rotation_spread.hpp"
-#include "platform/tools/calibrate/say.hpp"
 #include "platform/tools/calibrate/tool_frame.hpp"
 #include "platform/tools/calibrate/tool_round.hpp"
 

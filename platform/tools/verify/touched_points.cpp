@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/calibrate/pivot.hpp"
-#include "platform/tools/calibrate/say.hpp"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "platform/dense.hpp"
 #include "platform/input_error.hpp"
-#include "platform/tools/calibrate/say.hpp"
+#include "platform/tools/calibrate/figure_text.hpp"
 #include "platform/tools/report/statistics.hpp"
 #include "platform/tools/verify/joint_covariance.hpp"
 #include "platform/tools/verify/touched_points.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/sinks/dds/heard.hpp"
+#include "platform/sinks/dds/received_messages.hpp"
 
 namespace glint {
 

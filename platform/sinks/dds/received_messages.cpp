@@ -1,4 +1,4 @@
-#include "platform/sinks/dds/heard.hpp"
+#include "platform/sinks/dds/received_messages.hpp"
 
 #include <cmath>
 #include <cstring>

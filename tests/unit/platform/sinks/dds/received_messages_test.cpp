@@ -1,5 +1,5 @@
 // Decoding of hostile messages without a network: arbitrary lengths and counts.
-#include "platform/sinks/dds/heard.hpp"
+#include "platform/sinks/dds/received_messages.hpp"
 
 #include <gtest/gtest.h>
 
