@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
 namespace glint {
@@ -15,7 +16,7 @@ TEST(Cholesky, SolvesAndInvertsWhatEigenDoes) {
     const Matrix6 matrix = test::random_covariance<6>(random, 1);
     const Cholesky<6> factor(matrix);
     ASSERT_TRUE(factor.positive);
-    const Matrix6 inverse = matrix.inverse();
+    const Matrix6 inverse = inverse_of(matrix);
     const double size = inverse.norm();
     EXPECT_LT((factor.inverse() - inverse).norm(), 1e-10 * size * size);
     Vector6 b;

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "kernels/motion/singer.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
 namespace glint {
@@ -84,7 +85,7 @@ TEST(MotionFilter, CorrectsByAPoseAsTheTextbookDoes) {
     h.block<3, 3>(3, k_rotation).setIdentity();
     const Eigen::Matrix<double, 18, 6> seen = product(before.covariance, h.transpose());
     const Matrix6 s = product(h, seen) + measured.covariance;
-    const Matrix6 inverse = s.inverse();
+    const Matrix6 inverse = inverse_of(s);
     const Eigen::Matrix<double, 18, 6> gain = product(seen, inverse);
     const Vector6 innovation = pose_difference(measured.pose, before.pose);
     EXPECT_LT((test::error_between(after, before) - product(gain, innovation)).norm(), 1e-10);

@@ -8,6 +8,7 @@
 
 #include "kernels/motion/motion_filter.hpp"
 #include "kernels/motion/rest_window.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
 namespace glint::rest_window_reference_test {
@@ -71,7 +72,7 @@ class ReferenceWindow {
     const Matrix6 covariance =
         mean_covariance(newer, 0) + mean_covariance(older, newer) +
         halves_covariance(correlated_, settings_.correlation, seconds(frames));
-    return {apart, apart.dot(covariance.inverse() * apart)};
+    return {apart, apart.dot(Matrix6(inverse_of(covariance)) * apart)};
   }
   [[nodiscard]] StaticEstimate rest() const {
     const Halves cut = halves(frames_);

@@ -8,6 +8,7 @@
 
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/stroke_noise.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
@@ -210,7 +211,7 @@ TEST(ToolMotion, IsAsSureAsItIsRight) {
     if (frame < 45) continue;
     const UncertainPose estimate = pose_of(motion->estimate());
     const Vector6 error = pose_difference(truth, estimate.pose);
-    squares += error.dot(estimate.covariance.inverse() * error) / 6;
+    squares += error.dot(Matrix6(inverse_of(estimate.covariance)) * error) / 6;
     ++n;
   }
   EXPECT_NEAR(squares / n, 1.0, 0.3);

@@ -1,13 +1,13 @@
 // The world error filters against a textbook Kalman filter with full matrices.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "kernels/motion/motion_filter.hpp"
 #include "kernels/motion/world_errors.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
 namespace glint::world_errors_reference_test {
@@ -54,15 +54,16 @@ struct ReferenceFilter {
     const Gain ph = product(covariance, h.transpose());
     const Matrix6 s = product(h, ph) + sight.covariance;
     const Vector6 innovation = pose_difference(sight.T_world_body, body) - product(h, state);
-    const Vector6 solved = s.inverse() * innovation;
-    const double chi_square = innovation.dot(solved);
-    log_likelihood -= 0.5 * std::min(chi_square, 38.3) + 0.5 * std::log(s.determinant());
+    const Matrix6 inverse = inverse_of(s);
+    const double chi_square = innovation.dot(product(inverse, innovation));
+    log_likelihood -=
+        0.5 * std::min(chi_square, 38.3) + 0.5 * symmetric_eigen(s).values.array().log().sum();
     if (chi_square > 38.3) {
       if (++refused == 9) reset();
       return;
     }
     refused = 0;
-    const Gain gain = product(ph, Matrix6(s.inverse()));
+    const Gain gain = product(ph, inverse);
     state += product(gain, innovation);
     covariance = product(Square(Square::Identity() - product(gain, h)), covariance);
   }

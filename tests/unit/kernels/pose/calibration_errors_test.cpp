@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
 namespace glint::calibration_errors_test {
@@ -79,7 +79,7 @@ CalibrationErrors seen_by(const Tool& tool, const Errors& errors, int fits, Rand
 ErrorMatrix covariance_of(const CalibrationErrors& sums) {
   ErrorMatrix matrix = sums.information.selfadjointView<Eigen::Lower>();
   matrix.diagonal().array() += 1;
-  return matrix.llt().solve(ErrorMatrix::Identity());
+  return inverse_of(matrix);
 }
 
 // Errors drawn from the declared distributions: NEES of the estimate.
@@ -96,7 +96,8 @@ TEST(CalibrationErrors, LieWithinTheirCovariance) {
     EXPECT_EQ(sums.fits, 30);
     const ErrorMatrix covariance = covariance_of(sums);
     const ErrorVector off = covariance * sums.information_vector - errors.sigmas;
-    squares += off.dot(covariance.llt().solve(off)) / (k_common_errors + 3 * tool.marker_count);
+    squares += off.dot(ErrorVector(solve_symmetric(covariance, off))) /
+               (k_common_errors + 3 * tool.marker_count);
   }
   // These measurements lack the correlated and uncalibrated errors that inflate the stated noise,
   // so the estimate's errors are a little smaller.

@@ -1,22 +1,20 @@
 // Sums of the calibration errors and a fit's optimum against full matrices.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "kernels/pose/calibration_errors.hpp"
 #include "kernels/pose/lever_arm.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
 namespace glint::calibration_sums_test {
 namespace {
 
 using test::Random;
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1>;
-using Poses = Eigen::Matrix<double, Eigen::Dynamic, 6>;
-using Errors = Eigen::Matrix<double, Eigen::Dynamic, k_calibration_errors>;
+using Full = Eigen::MatrixXd;
 
 constexpr MarkerVariance k_variance{0.01, 0.003, 0.02, 0.0015 * 0.0015};
 constexpr CameraUncertainty k_stated{0.005, 0.02, 2, 0.004, 0.0009, 0.06, 0.6, 0.002};
@@ -81,9 +79,9 @@ Pose nudged(const Pose& pose, const Vector3& mean_m, int parameter, double by) {
 }
 
 struct FullMatrices {
-  Column f;
-  Poses j;
-  Errors c;  // minus the derivatives by the errors, per declared sigma
+  Full f;
+  Full j;
+  Full c;  // minus the derivatives by the errors, per declared sigma
 };
 
 // Numerical derivatives of the residuals.
@@ -91,11 +89,11 @@ FullMatrices full_matrices_of(const Measurements& seen, const Pose& pose) {
   const auto n = static_cast<Eigen::Index>(seen.markers.size());
   const Vector3 mean_m = mean_of(seen.markers), none = Vector3::Zero();
   const Vector2 still = Vector2::Zero(), principal(256, 256);
-  FullMatrices out{Column(3 * n), Poses(3 * n, 6), Errors::Zero(3 * n, k_calibration_errors)};
+  FullMatrices out{Full(3 * n, 1), Full(3 * n, 6), Full::Zero(3 * n, k_calibration_errors)};
   constexpr double k_h = 1e-6;
   for (Eigen::Index row = 0; row < n; ++row) {
     const auto i = static_cast<std::size_t>(row);
-    out.f.segment<3>(3 * row) = residuals(seen, i, pose, none, still, 0);
+    out.f.block<3, 1>(3 * row, 0) = residuals(seen, i, pose, none, still, 0);
     for (int p = 0; p < 6; ++p)
       out.j.block<3, 1>(3 * row, p) =
           (residuals(seen, i, nudged(pose, mean_m, p, k_h), none, still, 0) -
@@ -141,11 +139,12 @@ TEST(CalibrationSums, AreThoseOfTheWholeMatricesWithoutThePosesPart) {
       const Measurements seen(tool, pose, random);
       ASSERT_TRUE(seen.add_to(&sums, pose));
       const FullMatrices full = full_matrices_of(seen, pose);
-      const Matrix6 normal = full.j.transpose() * full.j;
-      const Column left = full.f - full.j * normal.llt().solve(full.j.transpose() * full.f);
-      const Errors kept = full.c - full.j * normal.llt().solve(full.j.transpose() * full.c);
-      information += kept.transpose() * kept;
-      pull -= kept.transpose() * left;
+      const Full jt = full.j.transpose(), normal = jt * full.j;
+      const Full left = full.f - full.j * solve_symmetric(normal, jt * full.f);
+      const Full kept = full.c - full.j * solve_symmetric(normal, jt * full.c);
+      const Full kept_t = kept.transpose();
+      information += Full(kept_t * kept);
+      pull -= Full(kept_t * left);
       for (const WeightedMarker& marker : seen.markers)
         ranges_m += marker.range_m / tool.marker_count;
       EXPECT_EQ(sums.fits, fit + 1);
@@ -170,18 +169,18 @@ TEST(CalibrationSums, GiveTheStepToTheOptimumItsCovarianceAndWhatMovesIt) {
     const Result<OptimalFit> fit = seen.add_to(nullptr, pose);
     ASSERT_TRUE(fit);
     const FullMatrices full = full_matrices_of(seen, pose);
-    const Matrix6 inverse = Matrix6(full.j.transpose() * full.j).inverse();
-    const Vector6 step = -inverse * (full.j.transpose() * full.f);
+    const Full jt = full.j.transpose(), inverse = inverse_of(jt * full.j);
+    const Vector6 step = Full(-inverse * Full(jt * full.f));
     const Vector3 mean_m = mean_of(seen.markers);
     const Quaternion turned = from_rotation_vector(step.tail<3>()) * pose.rotation;
     const Pose& found = fit.value.T_camera_tool;
     EXPECT_LT(found.rotation.angularDistance(turned), 1e-6);
     EXPECT_LT((found * mean_m - pose * mean_m - step.head<3>()).norm(), 1e-7);
-    const Matrix6 to_origin = pose_by_pose(-(found.rotation * mean_m));
-    const Matrix6 covariance = to_origin * inverse * to_origin.transpose();
+    const Full to_origin = pose_by_pose(-(found.rotation * mean_m));
+    const Full moved = to_origin * inverse;
+    const Full covariance = moved * Full(to_origin.transpose());
     EXPECT_LT((fit.value.covariance - covariance).norm(), 1e-5 * covariance.norm());
-    const Eigen::Matrix<double, 6, k_common_errors> by_errors =
-        to_origin * inverse * (full.j.transpose() * full.c.leftCols<k_common_errors>());
+    const Full by_errors = moved * Full(jt * Full(full.c.leftCols(k_common_errors)));
     EXPECT_LT((fit.value.by_errors - by_errors).norm(), 1e-5 * by_errors.norm());
   }
 }

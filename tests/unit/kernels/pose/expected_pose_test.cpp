@@ -6,6 +6,7 @@
 
 #include "kernels/pose/chi_square_limit.hpp"
 #include "kernels/pose/lever_arm.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
 namespace glint::expected_pose_test {
@@ -75,7 +76,7 @@ TEST(ExpectedPose, SurpriseIsTheDistanceInBothCovariancesAboutItsReference) {
     Vector6 apart;
     apart << found * expected.reference_m - expected.T_camera_tool * expected.reference_m, turn;
     const Matrix6 both = expected.covariance + j * own * j.transpose();
-    const double distance = apart.dot(both.inverse() * apart);
+    const double distance = apart.dot(Matrix6(inverse_of(both)) * apart);
     EXPECT_NEAR(mahalanobis_square(expected, found, own, reference_m) / distance, 1, 1e-7);
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/pose/rigid_fit.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {
@@ -127,7 +128,8 @@ TEST(FitCovariance, IsTheNoiseCarriedThroughTheUnweightedFit) {
       normal += j.transpose() * j;
       covariance_sum += j.transpose() * c.covariances[i] * j;
     }
-    const Matrix6 expected = normal.inverse() * covariance_sum * normal.inverse();
+    const Matrix6 inverse = inverse_of(normal);
+    const Matrix6 expected = inverse * covariance_sum * inverse;
     const auto found = fit_covariance(c.points, c.covariances, reference);
     ASSERT_TRUE(found);
     EXPECT_LT((found.value - expected).norm(), 1e-8 * expected.norm());

@@ -1,7 +1,6 @@
 // Steps of the weighted fit against a reference of its rules, and its normal equations.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "kernels/pose/normal_equations.hpp"
 #include "kernels/pose/pose_prior.hpp"
 #include "kernels/pose/weighted_fit.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
 namespace glint::fit_steps_test {
@@ -47,7 +47,7 @@ ReferenceFit reference_fit(const std::vector<WeightedMarker>& markers, const Vec
   while (true) {
     Matrix6 matrix = here.matrix.selfadjointView<Eigen::Lower>();
     matrix.diagonal() *= 1 + damping;
-    const Vector6 step = -matrix.llt().solve(here.gradient);
+    const Vector6 step = -solve_symmetric(matrix, here.gradient);
     Pose there;
     const double length = step.tail<3>().norm();
     const Vector3 axis = step.tail<3>() / length;

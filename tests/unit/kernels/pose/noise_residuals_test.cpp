@@ -1,7 +1,6 @@
 // Sums of residuals and the noise estimate against their formulas, with all values different.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,6 +8,7 @@
 
 #include "kernels/pose/noise_estimate.hpp"
 #include "kernels/pose/weighted_fit.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
 namespace glint::noise_residuals_test {
@@ -48,8 +48,8 @@ MarkerResiduals plain_residuals(const std::vector<WeightedMarker>& markers,
           (2 * h);
     }
   }
-  const Matrix6 normal = jacobian.transpose() * jacobian;
-  const Eigen::MatrixXd hat = jacobian * normal.llt().solve(jacobian.transpose());
+  const Eigen::MatrixXd transposed = jacobian.transpose();
+  const Eigen::MatrixXd hat = jacobian * solve_symmetric(transposed * jacobian, transposed);
   double least_m2 = 1e9, least_px2 = 1e9;
   for (const MarkerVariance& variance : variances) {
     least_m2 = std::min(least_m2, variance.range_m2);

@@ -7,4 +7,4 @@ glint_test(glint_pose_test ../elementary_test.cpp best_rotation_test.cpp rigid_f
     systematic_covariance_test.cpp candidates_test.cpp pair_matches_test.cpp
     correspond_search_test.cpp refine_work_test.cpp fit_steps_test.cpp fit_parts_test.cpp
     noise_residuals_test.cpp calibration_sums_test.cpp
-  LIBS glint_kernels LABELS unit SHARDS 2 COMPUTES)
+  LIBS glint_kernels glint_dense LABELS unit SHARDS 2 COMPUTES)
