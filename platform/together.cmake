@@ -1,6 +1,8 @@
-# Several files compiled as one read their headers once. CMAKE_UNITY_BUILD does it to every target;
-# GLINT_TOGETHER to the platform and the tests: the core's files keep the machine code whose cost
-# was measured.
+# Several files compiled as one read their headers once. UNITY_BUILD asks for it, as CMake's own unity
+# build does, whose files name whole paths; these name paths from the top, so that the compiler's
+# cache compares the same text in every clone and need not preprocess it. CMAKE_UNITY_BUILD asks for
+# every target; GLINT_TOGETHER for the platform and the tests: the core's files keep the machine code
+# whose cost was measured.
 set(GLINT_TOGETHER_OPTIONS "")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes such a file for a header
   set(GLINT_TOGETHER_OPTIONS $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
@@ -13,7 +15,61 @@ endif()
 macro(glint_together)
   if(GLINT_TOGETHER AND NOT CMAKE_UNITY_BUILD)
     set(CMAKE_UNITY_BUILD ON)
-    set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+    set(CMAKE_UNITY_BUILD_BATCH_SIZE 40)
     add_compile_options(${GLINT_TOGETHER_OPTIONS})
   endif()
 endmacro()
+
+# Replaces a target's sources by files that include up to UNITY_BUILD_BATCH_SIZE of them. Sources with
+# options of their own stay.
+function(glint_join_sources target)
+  get_target_property(folder ${target} SOURCE_DIR)
+  get_target_property(sources ${target} SOURCES)
+  get_target_property(in_one_file ${target} UNITY_BUILD_BATCH_SIZE)
+  set(joined "")
+  set(kept "")
+  foreach(source ${sources})
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} NORMALIZE OUTPUT_VARIABLE path)
+    cmake_path(IS_PREFIX CMAKE_SOURCE_DIR ${path} joins)
+    foreach(property SKIP_UNITY_BUILD_INCLUSION COMPILE_OPTIONS GENERATED)
+      get_source_file_property(own ${path} TARGET_DIRECTORY ${target} ${property})
+      if(own OR NOT path MATCHES "\\.cpp$")
+        set(joins FALSE)
+      endif()
+    endforeach()
+    if(joins)
+      cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
+      list(APPEND joined ${path})
+    else()
+      list(APPEND kept ${source})
+    endif()
+  endforeach()
+  list(TRANSFORM joined REPLACE "(.+)" "#include \"\\1\"")
+  list(LENGTH joined count)
+  set(first 0)
+  while(first LESS count)
+    list(SUBLIST joined ${first} ${in_one_file} batch)
+    list(JOIN batch "\n" text)
+    set(file ${CMAKE_BINARY_DIR}/together/${target}_${first}.cpp)
+    file(CONFIGURE OUTPUT ${file} CONTENT "${text}\n" @ONLY)
+    list(APPEND kept ${file})
+    math(EXPR first "${first} + ${in_one_file}")
+  endwhile()
+  set_target_properties(${target} PROPERTIES SOURCES "${kept}" UNITY_BUILD OFF)
+endfunction()
+
+# Every target of a folder and below. Called last: a target's sources are then complete.
+function(glint_join_all_sources folder)
+  get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
+  foreach(below ${folders})
+    glint_join_all_sources(${below})
+  endforeach()
+  get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target ${targets})
+    get_target_property(together ${target} UNITY_BUILD)
+    get_target_property(type ${target} TYPE)
+    if(together AND type MATCHES "LIBRARY|EXECUTABLE" AND NOT type STREQUAL "INTERFACE_LIBRARY")
+      glint_join_sources(${target})
+    endif()
+  endforeach()
+endfunction()

@@ -112,19 +112,11 @@ class Judge:
         return None if same else str(output)
 
     def _source(self, source, mutation, folder):
-        """What is compiled instead of `source`: the mutated file, or a copy of the list of files
-        that are compiled as one, which names them by their whole paths."""
+        """What is compiled instead of `source`. A list of files that are compiled as one names them
+        from the top: the mutated tree's comes first among the folders to include from."""
         unmutated, mutated = (str(tree / mutation.path)
                               for tree in (self.programs.tree, folder / "tree"))
-        if source == unmutated:
-            return mutated
-        listed = f'"{unmutated}"'
-        text = pathlib.Path(source).read_text() if "/Unity/" in source else ""
-        if listed not in text:
-            return source
-        copy = folder / os.path.basename(source)
-        copy.write_text(text.replace(listed, f'"{mutated}"'))
-        return str(copy)
+        return mutated if source == unmutated else source
 
     def _failing_test(self, program, path, changed, folder):
         """The first test that fails with the changed objects, or None."""
