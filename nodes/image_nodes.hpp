@@ -52,8 +52,8 @@ struct FindBlobs {
                        scratch_, blobs, limits);
   }
 
-  static constexpr std::array<std::string_view, 5> k_loops = {"call", "runs", "distances", "blobs",
-                                                              "pixels"};
+  static constexpr std::array<std::string_view, 6> k_loops = {"call",  "runs",   "distances",
+                                                              "blobs", "pixels", "rescans"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     return counts_of(blob_work_max(limits));
   }
@@ -61,7 +61,7 @@ struct FindBlobs {
 
  private:
   static constexpr graph::LoopCounts counts_of(const BlobWork& work) noexcept {
-    return {{1, work.runs, work.distances, work.blobs, work.pixels}};
+    return {{1, work.runs, work.distances, work.blobs, work.pixels, work.rescans}};
   }
   BlobScratch scratch_;
   BlobWork work_;

@@ -18,8 +18,8 @@ enum BlobFlag : std::uint8_t {
 };
 
 struct Blob {
-  Vector2 centroid_px = Vector2::Zero();         // pixel centres at integer + 0.5
-  std::uint32_t area_px = 0;                     // pixels above the threshold
+  Vector2 centroid_px = Vector2::Zero();  // pixel centres at integer + 0.5
+  std::uint32_t area_px = 0;  // pixels above the threshold, or above the level of a rescan
   std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // bounding box, half open
   std::uint16_t peak = 0;                        // brightest reflectivity, raw
   std::uint8_t flags = 0;                        // BlobFlag
@@ -31,7 +31,7 @@ struct Blob {
 struct Blobs {
   std::array<Blob, k_blobs_max> items;  // in row order: top first, then left first
   int count = 0;
-  std::uint32_t dropped = 0;   // beyond the budget, or outside the size gate
+  std::uint32_t dropped = 0;   // beyond the budget, outside the size gate, or of low contrast
   std::uint32_t left_out = 0;  // of these, the ones inside the gate: another frame may keep them
   // blobs_full also if all blobs are kept, but the budget for their centroids was too small.
   Reason reason = Reason::none;

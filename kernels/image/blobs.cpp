@@ -6,6 +6,7 @@
 #include "kernels/image/centroid_variance.hpp"
 #include "kernels/image/components.hpp"
 #include "kernels/image/marker_misfit.hpp"
+#include "kernels/image/rescan.hpp"
 #include "kernels/merge_sort.hpp"
 #include "kernels/shared_budget.hpp"
 
@@ -14,13 +15,20 @@ namespace {
 
 using Index = std::uint16_t;
 
-// Collects the components inside the size gate; returns their number.
-int gather_candidates(const BlobSettings& settings, BlobScratch& scratch) {
+// Collects the components inside the size gate, of rescanned ones those with a marker's contrast;
+// returns their number.
+int gather_candidates(const Frame& frame, const BlobSettings& settings, int rescanned_from,
+                      BlobScratch& scratch) {
   int candidates = 0;
-  for (int i = 0; i < scratch.component_count; ++i) {
+  const auto add_if_inside_gate = [&](int i) {
     const std::uint32_t area = scratch.components[static_cast<std::size_t>(i)].area_px;
     scratch.candidate[static_cast<std::size_t>(candidates)] = static_cast<Index>(i);
     candidates += area >= settings.min_area_px && area <= settings.max_area_px ? 1 : 0;
+  };
+  for (int i = 0; i < rescanned_from; ++i) add_if_inside_gate(i);
+  for (int i = rescanned_from; i < scratch.component_count; ++i) {
+    if (has_marker_contrast(frame, scratch.components[static_cast<std::size_t>(i)]))
+      add_if_inside_gate(i);
   }
   return candidates;
 }
@@ -75,6 +83,11 @@ Blob blob_of(const Frame& frame, const Component& component, const Centroid& cen
     blob.variance_px2[0] += shape[0];
     blob.variance_px2[1] += shape[1];
   }
+  if (component.level > 0) {
+    const std::array<float, 2> surface = surface_variance(frame, centroid, component);
+    blob.variance_px2[0] += surface[0];
+    blob.variance_px2[1] += surface[1];
+  }
   return blob;
 }
 
@@ -89,11 +102,16 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   for (const Runs* band : bands) {
     if (band->reason != Reason::none) out.reason = band->reason;
   }
+  find_components(bands, scratch, limits.runs_per_band);
+  const int rescanned_from = scratch.component_count;
+  const Rescan rescan = rescan_oversized(frame, settings.max_area_px, runs_of_all_bands_max(limits),
+                                         rescan_blocks_max(limits), scratch);
+  if (rescan.reason != Reason::none) out.reason = rescan.reason;
   out.incomplete = out.reason;
   BlobWork work;
-  find_components(bands, scratch, limits.runs_per_band);
   work.runs = scratch.run_count;
-  int candidates = gather_candidates(settings, scratch);
+  work.rescans = rescan.blocks;
+  int candidates = gather_candidates(frame, settings, rescanned_from, scratch);
   const int blobs_max = std::clamp(limits.blobs, 0, k_blobs_max);
   if (candidates > blobs_max) {
     out.reason = Reason::blobs_full;
@@ -117,8 +135,9 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
     const bool within_budget = pixels <= pixels_max;
     if (within_budget) budget.spend(pixels);
     if (!within_budget) out.reason = Reason::blobs_full;
+    const std::uint16_t level = std::max(settings.threshold, component.level);
     const Centroid centroid = small && within_budget
-                                  ? grown_centroid(frame, scratch, component, settings.threshold)
+                                  ? grown_centroid(frame, scratch, component, level)
                                   : binary_centroid(frame, scratch, component);
     out.items[static_cast<std::size_t>(out.count++)] =
         blob_of(frame, component, centroid, settings);

@@ -13,17 +13,6 @@ Vector2 from_half_pixels(std::int64_t x, std::int64_t y, std::int64_t weight) {
   return {static_cast<double>(x) / w * 0.5, static_cast<double>(y) / w * 0.5};
 }
 
-// Calls visit(run) for each of the component's runs, at most k_runs_max.
-template <class Visit>
-void for_each_run(const BlobScratch& scratch, const Component& component, Visit visit) {
-  std::uint16_t index = component.first_run;
-  for (int i = 0; i < k_runs_max; ++i) {
-    visit(scratch.runs[index]);
-    if (index == component.last_run) return;
-    index = scratch.next_run[index];
-  }
-}
-
 template <class Pixel>
 Centroid weighted(const ImageView<Pixel>& image, const BlobScratch& scratch,
                   const Component& component, std::int64_t threshold) {

@@ -51,7 +51,7 @@ class Variance {
   Variance(const Centroid& centroid, const Component& component, const BlobSettings& settings)
       : c_(centroid),
         signal_(std::max(c_.peak - c_.background, 1.0)),
-        threshold_(std::max(settings.threshold - c_.background, 0.0)),
+        threshold_(std::max(std::max(settings.threshold, component.level) - c_.background, 0.0)),
         rim_(rim(component.area_px, c_.peak >= settings.saturated_from)) {
     const PixelNoise& noise = settings.noise;
     const double uneven = squared(noise.proportional);
@@ -109,6 +109,33 @@ std::array<float, 2> shape_variance(const Component& component, bool cut_x, bool
   const float x = missing + (cut_x ? k_border_sigma_px : 0),
               y = missing + (cut_y ? k_border_sigma_px : 0);
   return {x * x, y * y};
+}
+
+// A step d across the middle adds d / 2 on one side of the grown disc and -d / 2 on the other; the
+// mean |x| of a disc of diameter D is 2 D / (3 pi). The samples are beyond the grown blob's rim.
+std::array<float, 2> surface_variance(const Frame& frame, const Centroid& centroid,
+                                      const Component& component) noexcept {
+  constexpr int k_beyond_px = 3;
+  constexpr double k_mean_offset = 2 / (3 * std::numbers::pi);
+  if (centroid.pixels == 0) return {};
+  const auto background_at = [&](int column, int row) {
+    const int x = std::clamp(column, 0, frame.width() - 1);
+    const int y = std::clamp(row, 0, frame.height() - 1);
+    const int value = frame.reflectivity_8.empty() ? int{frame.reflectivity_16.row(y)[x]}
+                                                   : int{frame.reflectivity_8.row(y)[x]};
+    return std::min(value, int{component.level});
+  };
+  const auto variance_of = [&](int step, int size) {
+    const double offset = 0.5 * step * centroid.pixels * k_mean_offset * (size + 2);
+    return static_cast<float>(squared(offset / centroid.intensity_sum));
+  };
+  const int x = (component.x0 + component.x1) / 2, y = (component.y0 + component.y1) / 2;
+  const int step_x = background_at(component.x1 - 1 + k_beyond_px, y) -
+                     background_at(component.x0 - k_beyond_px, y);
+  const int step_y = background_at(x, component.y1 - 1 + k_beyond_px) -
+                     background_at(x, component.y0 - k_beyond_px);
+  return {variance_of(step_x, component.x1 - component.x0),
+          variance_of(step_y, component.y1 - component.y0)};
 }
 
 }  // namespace glint

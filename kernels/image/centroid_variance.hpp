@@ -3,7 +3,8 @@
 // What:     the first moment's variance by pixel noise and by noise of the subtracted background;
 //           sampling error of a sharp rim by pixels of finite size, larger if saturation clips the
 //           rim; possible light of a neighbour. shape_variance: possible offset of the centre if
-//           the blob is cut, merged or partially occluded.
+//           the blob is cut, merged or partially occluded. surface_variance: offset by an uneven
+//           background.
 // Cost:     some eighty operations, a root and no loop.
 // Worst:    data independent.
 // Accuracy: spheres of 4 to 10 px, static and with 2 px of motion blur, three and ten times
@@ -51,5 +52,11 @@ inline constexpr float k_border_sigma_px = 1;
 // discs, or the centre of a half occluded one, are half the excess away.
 [[nodiscard]] std::array<float, 2> shape_variance(const Component& component, bool cut_x,
                                                   bool cut_y) noexcept GLINT_NONBLOCKING;
+
+// Variance to add for a component of rescan_oversized(): its background is a surface, which may end
+// beside the marker. Square of the offset by a step between the backgrounds on opposite sides.
+[[nodiscard]] std::array<float, 2> surface_variance(const Frame& frame, const Centroid& centroid,
+                                                    const Component& component) noexcept
+    GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -28,41 +28,47 @@ Index root_of(BlobScratch& scratch, Index run) {
   return run;
 }
 
-// Joins each run with all runs that it touches in the row above.
-void join_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int runs_per_band) {
+// Copies the runs of all bands to the scratch.
+void gather_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int runs_per_band) {
   const std::size_t band_count = std::min<std::size_t>(bands.size(), k_row_bands);
   const int runs_max = std::clamp(runs_per_band, 0, k_runs_per_band_max);
-  RasterRun* const runs = scratch.runs.data();
-  int count = 0;
-  int above = 0;  // first run that may still touch; runs of the same row never touch
+  std::size_t count = 0;
   for (std::size_t band = 0; band < band_count; ++band) {
     const int in_band = std::clamp(bands[band]->count, 0, runs_max);
-    for (int i = 0; i < in_band; ++i) {
-      const RasterRun run = raster_run(bands[band]->items[static_cast<std::size_t>(i)]);
-      const auto self = static_cast<Index>(count++);
-      runs[self] = run;
-      scratch.parent[self] = self;
-      while (runs[above].end + k_row < run.begin) ++above;
-      int j = above;
-      if (runs[j].begin + k_row > run.end) continue;
-      Index root = root_of(scratch, static_cast<Index>(j));
-      for (++j; runs[j].begin + k_row <= run.end; ++j) {
-        const Index other = root_of(scratch, static_cast<Index>(j));
-        if (other == root) continue;
-        scratch.parent[std::max(root, other)] = std::min(root, other);
-        root = std::min(root, other);
-      }
-      scratch.parent[self] = root;
-    }
+    for (int i = 0; i < in_band; ++i)
+      scratch.runs[count++] = raster_run(bands[band]->items[static_cast<std::size_t>(i)]);
   }
-  scratch.run_count = count;
+  scratch.run_count = static_cast<int>(count);
+}
+
+// Joins each run from first_run on with all of these that it touches in the row above.
+void join_runs(BlobScratch& scratch, int first_run) {
+  const RasterRun* const runs = scratch.runs.data();
+  const int count = scratch.run_count;
+  int above = first_run;  // first run that may still touch; runs of the same row never touch
+  for (int i = first_run; i < count; ++i) {
+    const RasterRun run = runs[i];
+    const auto self = static_cast<Index>(i);
+    scratch.parent[self] = self;
+    while (runs[above].end + k_row < run.begin) ++above;
+    int j = above;
+    if (runs[j].begin + k_row > run.end) continue;
+    Index root = root_of(scratch, static_cast<Index>(j));
+    for (++j; runs[j].begin + k_row <= run.end; ++j) {
+      const Index other = root_of(scratch, static_cast<Index>(j));
+      if (other == root) continue;
+      scratch.parent[std::max(root, other)] = std::min(root, other);
+      root = std::min(root, other);
+    }
+    scratch.parent[self] = root;
+  }
 }
 
 // A parent precedes its runs, so its component exists before they are assigned to it.
-void gather_components(BlobScratch& scratch) {
+void gather_components(BlobScratch& scratch, int first_run, std::uint16_t level) {
   const int run_count = scratch.run_count;
-  int count = 0;
-  for (int i = 0; i < run_count; ++i) {
+  int count = scratch.component_count;
+  for (int i = first_run; i < run_count; ++i) {
     const auto self = static_cast<Index>(i);
     const RasterRun run = scratch.runs[self];
     const auto y0 = static_cast<std::uint16_t>(run.y()), y1 = static_cast<std::uint16_t>(y0 + 1);
@@ -71,7 +77,7 @@ void gather_components(BlobScratch& scratch) {
     const Index parent = scratch.parent[self];
     if (parent == self) {
       scratch.parent[self] = static_cast<Index>(count);
-      scratch.components[static_cast<Index>(count++)] = {length, x0, y0, x1, y1, self, self};
+      scratch.components[static_cast<Index>(count++)] = {length, x0, y0, x1, y1, self, self, level};
       continue;
     }
     const Index index = scratch.parent[parent];
@@ -89,10 +95,16 @@ void gather_components(BlobScratch& scratch) {
 
 }  // namespace
 
+void append_components(BlobScratch& scratch, int first_run, std::uint16_t level) noexcept {
+  join_runs(scratch, first_run);
+  gather_components(scratch, first_run, level);
+}
+
 void find_components(std::span<const Runs* const> bands, BlobScratch& scratch,
                      int runs_per_band) noexcept {
-  join_runs(bands, scratch, runs_per_band);
-  gather_components(scratch);
+  gather_runs(bands, scratch, runs_per_band);
+  scratch.component_count = 0;
+  append_components(scratch, 0, 0);
 }
 
 }  // namespace glint

@@ -14,6 +14,7 @@
 //           processing", Theoretical Computer Science 154 (1996).
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "kernels/image/blob_scratch.hpp"
@@ -26,5 +27,10 @@ namespace glint {
 // then left first.
 void find_components(std::span<const Runs* const> bands, BlobScratch& scratch,
                      int runs_per_band = k_runs_per_band_max) noexcept GLINT_NONBLOCKING;
+
+// Appends the components of the runs from first_run on. Requires these in row-major order; runs of
+// one row do not touch. level: see Component.
+void append_components(BlobScratch& scratch, int first_run,
+                       std::uint16_t level) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -48,7 +48,8 @@ bool has_low_contrast(const Frame& frame, const Component& component, std::uint1
 
 int marker_misfit(const Frame& frame, const Component& component,
                   const BlobSettings& settings) noexcept {
-  int steps = has_low_contrast(frame, component, settings.threshold) ? 1 : 0;
+  int steps =
+      has_low_contrast(frame, component, std::max(settings.threshold, component.level)) ? 1 : 0;
   const int width = component.x1 - component.x0, height = component.y1 - component.y0;
   const std::uint64_t area = component.area_px;
   const auto box = static_cast<std::uint64_t>(width * height);

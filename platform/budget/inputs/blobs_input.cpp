@@ -11,6 +11,7 @@ namespace {
 
 constexpr int k_wide_px = k_grown_box_max;  // widest blob with a grown box
 constexpr int k_wide_pitch_px = 64;
+constexpr std::uint16_t k_marker_level = 60'000;  // on a surface of k_drawn_bright
 
 class MeasuredFindBlobs final : public MeasuredKernel {
  public:
@@ -106,7 +107,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
 
   void draw_worst(std::uint64_t variant, CounterRandom& random) {
     const int side = limits_.width;
-    switch (variant % 10) {
+    switch (variant % 13) {
       case 0:
         draw_dots_and_bars(1);
         break;
@@ -134,8 +135,17 @@ class MeasuredFindBlobs final : public MeasuredKernel {
       case 8:
         draw_scattered(random, 1);
         break;
-      default:
+      case 9:
         draw_scattered(random, 8);
+        break;
+      case 10:
+        draw_surface(random, 1, 1);
+        break;
+      case 11:
+        draw_surface(random, 1, 8);
+        break;
+      default:
+        draw_surface(random, std::max(runs_of_all_bands_max(limits_) / (2 * side), 1), 3);
         break;
     }
   }
@@ -149,6 +159,18 @@ class MeasuredFindBlobs final : public MeasuredKernel {
         const int end = x + random.between(1, longest);
         drawn_.pattern({limits_.width, 0, 1, 0, 0, x, end, y, y + 1});
       }
+    }
+  }
+
+  // A surface that fills the frame, in so many runs a row, and on it random short runs of markers,
+  // as many as the capacity leaves: one rescan of the complete frame.
+  void draw_surface(CounterRandom& random, int runs_per_row, int longest) {
+    const int pitch = limits_.width / runs_per_row, gap = runs_per_row > 1 ? 1 : 0;
+    drawn_.pattern({pitch - gap, gap, 1, 0, gap, 0, limits_.width, 0, limits_.height});
+    for (int i = runs_of_all_bands_max(limits_) - runs_per_row * limits_.height; i > 0; --i) {
+      const int x = random.below(limits_.width), y = random.below(limits_.height);
+      const int end = x + random.between(1, longest);
+      drawn_.pattern({limits_.width, 0, 1, 0, 0, x, end, y, y + 1, k_marker_level});
     }
   }
 
@@ -187,7 +209,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
       draw(halves);
       run();
       const graph::LoopCounts n = counts();
-      return 60 * n[1] + 7 * n[2] + 600 * n[3] + 6 * n[4];
+      return 60 * n[1] + 7 * n[2] + 600 * n[3] + 6 * n[4] + 40 * n[5];
     }));
   }
 

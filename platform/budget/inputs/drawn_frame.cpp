@@ -67,9 +67,9 @@ void DrawnFrame::depth_disc(double cx, double cy, double radius, std::uint16_t r
                    [&](std::size_t at) { buffer_.depth[at] = raw; });
 }
 
-void DrawnFrame::row_run(int y, int x0, int x1) {
+void DrawnFrame::row_run(int y, int x0, int x1, std::uint16_t level) {
   const auto row = buffer_.reflectivity_16.begin() + static_cast<std::ptrdiff_t>(y) * width();
-  if (x0 < x1) std::fill(row + x0, row + x1, k_drawn_bright);
+  if (x0 < x1) std::fill(row + x0, row + x1, level);
 }
 
 void DrawnFrame::pattern(const RunPattern& p) {
@@ -78,7 +78,7 @@ void DrawnFrame::pattern(const RunPattern& p) {
   for (int y = std::max(p.y0, 0); y < y1; ++y) {
     if ((y - p.y0) % (p.rows + p.skip) >= p.rows) continue;
     for (int x = p.x0 + (y - p.y0) * p.shift % period; x < x1; x += period) {
-      row_run(y, x, std::min(x + p.run, x1));
+      row_run(y, x, std::min(x + p.run, x1), p.level);
     }
   }
 }

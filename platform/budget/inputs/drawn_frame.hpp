@@ -16,6 +16,7 @@ struct RunPattern {
   int rows = 1, skip = 1;  // rows with runs, then rows without
   int shift = 0;           // offset to the right from one row to the next
   int x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+  std::uint16_t level = k_drawn_bright;
 };
 
 class DrawnFrame {
@@ -36,7 +37,7 @@ class DrawnFrame {
   [[nodiscard]] Frame view();
 
  private:
-  void row_run(int y, int x0, int x1);
+  void row_run(int y, int x0, int x1, std::uint16_t level);
 
   FrameBuffer buffer_;
   std::vector<std::uint8_t> narrow_;

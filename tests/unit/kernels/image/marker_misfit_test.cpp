@@ -219,6 +219,17 @@ TEST(MarkerMisfit, ReadsTheContrastInTheMiddle) {
   }
 }
 
+TEST(MarkerMisfit, ComparesTheContrastWithTheComponentsOwnLevel) {
+  for (const int middle : {299, 300}) {
+    Scene scene;
+    scene.settings.sizes.known = false;
+    scene.settings.threshold = 100;
+    scene.component.level = 150;
+    scene.level.assign(scene.level.size(), static_cast<std::uint16_t>(middle));
+    EXPECT_EQ(scene.misfit(), middle < 300 ? 1 : 0);
+  }
+}
+
 TEST(MarkerSizes, HoldTheDiscAtEachDepth) {
   const MarkerSizes sizes = marker_sizes({0.004, 0.007, 0.8, k_focal_px, 0.15, 1.0, 0.001, 4090});
   ASSERT_TRUE(sizes.known);
