@@ -3,6 +3,7 @@
 // meaning.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -39,6 +40,7 @@ enum class Reason : std::uint8_t {
   ambiguous = 26,          // found, but another labeling or pose fits the frame nearly as well
 };
 inline constexpr Reason k_last_reason = Reason::ambiguous;
+inline constexpr std::size_t k_reasons = static_cast<std::size_t>(k_last_reason) + 1;
 
 // Returns true for a deadline overrun.
 [[nodiscard]] constexpr bool is_overrun(Reason reason) {

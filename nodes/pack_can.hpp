@@ -14,6 +14,7 @@
 #include "kernels/limits.hpp"
 #include "kernels/nonblocking.hpp"
 #include "kernels/wire/can_frames.hpp"
+#include "kernels/wire/can_messages.hpp"
 #include "kernels/wire/node_frames.hpp"
 #include "nodes/tokens.hpp"
 
@@ -23,8 +24,8 @@ struct PackCanSettings {
   CanFormat format = CanFormat::classic;
   std::uint32_t base_identifier = k_can_base_default;
   unsigned node = 32;
-  Duration heartbeat_period = milliseconds(100);
-  Duration time_sync_period = milliseconds(1000);
+  Duration heartbeat_period = milliseconds(can_message("Heartbeat").period_ms);
+  Duration time_sync_period = milliseconds(can_message("TimeSync").period_ms);
   // Longest time without a new frame before the node is pre-operational (no camera, or a blocked
   // frame thread): 2.5 periods of 5 Hz, the slowest camera.
   Duration frames_lost_after = milliseconds(500);
@@ -36,7 +37,7 @@ struct PackCan {
   static constexpr std::array<std::string_view, 4> k_loops = {"call", "poses", "emergencies",
                                                               "node_frames"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    return {{1, limits.tools, limits.tools, 3}};  // heartbeat, SYNC and follow-up
+    return {{1, limits.tools, limits.tools, k_can_periodic_frames}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 

@@ -6,10 +6,6 @@
 namespace glint {
 namespace {
 
-constexpr double k_heartbeat_hz = 10;
-constexpr double k_time_pair_hz = 1;
-constexpr int k_classic_pose_frames = 5;
-
 // Five equal bits are followed by a stuff bit, which may start the next five: 1 + (n - 1) / 4.
 constexpr int stuff_bits(int bits) { return (bits - 1) / 4; }
 
@@ -49,6 +45,11 @@ CanFrameBits fd_bits(const CanFrameShape& shape) {
 
 }  // namespace
 
+CanFrameShape shape_of(const CanMessageLayout& message) noexcept {
+  const bool fd = message.format == CanFormat::fd;
+  return {message.bytes, false, fd, fd};
+}
+
 CanFrameBits worst_case_bits(const CanFrameShape& shape) noexcept {
   CanFrameShape possible = shape;
   possible.data_bytes = std::clamp(shape.data_bytes, 0, shape.fd ? 64 : 8);
@@ -61,16 +62,18 @@ double worst_case_seconds(const CanFrameShape& shape, const CanBitRates& rates) 
 }
 
 CanLoad bus_load(const CanTraffic& traffic, const CanBitRates& rates) noexcept {
-  const bool fd = traffic.format == CanFormat::fd;
-  const CanFrameShape pose{fd ? 64 : 8, false, fd, fd};
-  const int frames = fd ? 1 : k_classic_pose_frames;
-  const double poses_hz = traffic.tools * traffic.tick_hz;
   CanLoad load;
-  load.pose_seconds = frames * worst_case_seconds(pose, rates);
-  load.frames_per_second = frames * poses_hz + k_heartbeat_hz + 2 * k_time_pair_hz;
-  load.fraction = poses_hz * load.pose_seconds +
-                  k_heartbeat_hz * worst_case_seconds({.data_bytes = 1}, rates) +
-                  2 * k_time_pair_hz * worst_case_seconds({}, rates);
+  for (const CanMessageLayout& message : k_can_messages) {
+    if (!message.sent_in(traffic.format) || message.period_ms == k_can_on_event) continue;
+    const double seconds = worst_case_seconds(shape_of(message), rates);
+    const bool pose = message.rule == CanIdentifierRule::of_tool;
+    const double hz =
+        message.period_ms == k_can_each_tick ? traffic.tick_hz : 1e3 / message.period_ms;
+    const double frames_hz = pose ? traffic.tools * hz : hz;
+    if (pose) load.pose_seconds += seconds;
+    load.frames_per_second += frames_hz;
+    load.fraction += frames_hz * seconds;
+  }
   return load;
 }
 

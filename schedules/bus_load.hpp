@@ -1,7 +1,7 @@
 // Worst-case transmission time of a CAN frame, and the bus load of a cell.
 //
 // What:     the number of bits with maximum bit stuffing, divided by the bit rates.
-// Cost:     closed form, no loop.
+// Cost:     closed form; the load: one pass over the table of messages.
 // Worst:    computed here: every possible stuff bit occurs, and the intermission counts.
 // Accuracy: exact for classic frames; an upper bound for FD (stuff bits that may fall into the slow
 //           phase are counted there). Errors and retransmissions are not included.
@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "kernels/wire/can_frame.hpp"
+#include "kernels/wire/can_messages.hpp"
 
 namespace glint {
 
@@ -28,6 +28,8 @@ struct CanFrameShape {
   bool bit_rate_switch = false;  // FD only
 };
 
+[[nodiscard]] CanFrameShape shape_of(const CanMessageLayout& message) noexcept;
+
 struct CanFrameBits {
   int nominal = 0;  // sent at the nominal rate, intermission included
   int data = 0;     // sent at the data rate
@@ -37,8 +39,8 @@ struct CanFrameBits {
 [[nodiscard]] double worst_case_seconds(const CanFrameShape& shape,
                                         const CanBitRates& rates) noexcept;
 
-// Periodic traffic of a cell: the poses of its tools at the tick rate, the heartbeat at 10 Hz and
-// the pair of time frames at 1 Hz. Excludes emergency frames, which are sent only at state changes.
+// Periodic traffic of a cell: the messages of can_messages.hpp that have a period, of each tool at
+// the tick rate. Excludes emergency frames, which are sent only at state changes.
 struct CanTraffic {
   int tools = 1;
   double tick_hz = 250;

@@ -4,7 +4,7 @@
 // Cost:     a CRC over the frame and a few shifts; one square root for a rotation.
 // Worst:    data independent.
 // Accuracy: exact: integer x step.
-// Source:   the layout in can_frames.hpp.
+// Source:   the layout in can_messages.hpp.
 #pragma once
 
 #include <cstdint>

@@ -1,21 +1,15 @@
 // CAN frame (classic or FD) and the list of frames of one tick, independent of the bus driver.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 
 #include "kernels/limits.hpp"
+#include "kernels/wire/can_messages.hpp"
 
 namespace glint {
-
-inline constexpr std::uint32_t k_can_identifier_max = 0x7FF;                // 11 bits
-inline constexpr std::uint32_t k_can_extended_identifier_max = 0x1FFFFFFF;  // 29 bits
-
-enum class CanFormat : std::uint8_t {
-  classic,  // five frames of 8 bytes for one pose
-  fd,       // one frame of 64 bytes for one pose, data phase at the fast bit rate
-};
 
 struct CanFrame {
   std::uint32_t identifier = 0;
@@ -28,9 +22,21 @@ struct CanFrame {
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return {data.data(), length}; }
 };
 
+// Frame of a message, with zeros as data.
+[[nodiscard]] constexpr CanFrame frame_of(const CanMessageLayout& message,
+                                          std::uint32_t identifier) noexcept {
+  const bool fd = message.format == CanFormat::fd;
+  return {.identifier = identifier,
+          .length = static_cast<std::uint8_t>(message.bytes),
+          .fd = fd,
+          .bit_rate_switch = fd};
+}
+
 // Capacity for one tick: a pose of each tool, then the node's own frames.
-inline constexpr int k_can_frames_per_pose_max = 5;
-inline constexpr int k_can_node_frames_max = 3 + k_tools_max;  // SYNC, FUP, heartbeat, EMCYs
+inline constexpr int k_can_frames_per_pose_max =
+    std::max(can_frames_per_pose(CanFormat::classic), can_frames_per_pose(CanFormat::fd));
+inline constexpr int k_can_node_frames_max =
+    k_can_periodic_frames + k_tools_max;  // at most one emergency a tool
 inline constexpr int k_can_frames_max =
     k_tools_max * k_can_frames_per_pose_max + k_can_node_frames_max;
 

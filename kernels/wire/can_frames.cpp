@@ -4,86 +4,108 @@
 #include <limits>
 
 #include "kernels/wire/bits.hpp"
+#include "kernels/wire/can_layout_check.hpp"
 #include "kernels/wire/e2e.hpp"
 #include "kernels/wire/quantize.hpp"
 #include "kernels/wire/smallest_three.hpp"
 
 namespace glint {
-namespace {
 
-constexpr std::int64_t k_position_max = 0xFFFF;  // 17-bit signed
-constexpr std::int64_t k_word_max = 0x7FFF;      // 16-bit signed
-constexpr std::int64_t k_long_max = 0x7FFFFFFF;
-constexpr double k_one_rotation = 0x1p30;
+static_assert(is_consistent(k_can_messages));
+
+namespace {
 
 std::uint64_t as_bits(std::int64_t value) { return static_cast<std::uint64_t>(value); }
 
 std::uint64_t state_bits(TrackState state) { return static_cast<std::uint64_t>(state) & 3U; }
 
-// Where the position has its valid bit, the other words of a pose have the state.
-std::uint64_t state_at_end(TrackState state) { return state_bits(state) << 62; }
+// Every classic word but the position's ends with the state.
+std::uint64_t state_at_end(TrackState state) {
+  return bits_at(k_velocity_message.signal("State"), state_bits(state));
+}
 
 std::uint64_t marker_count(const PoseSample& sample) {
   return static_cast<std::uint64_t>(std::popcount(sample.marker_mask));
 }
 
-CanFrame classic(std::uint32_t identifier, std::uint64_t word, std::uint64_t tick_number) {
-  CanFrame frame;
-  frame.identifier = identifier;
-  frame.length = 8;
+CanFrame classic(const CanMessageLayout& message, std::uint32_t base, std::uint64_t word,
+                 std::uint64_t tick_number) {
+  CanFrame frame = frame_of(message, base + message.offset);
   const std::span<std::uint8_t> bytes(frame.data.data(), 8);
   put_little_endian(bytes, word);
   // Modulo of all 64 bits: that of the low 32 bits would repeat a counter when they overflow.
   const auto counter = static_cast<unsigned>(tick_number % k_p01_counters);
-  protect_p01(bytes, static_cast<std::uint16_t>(identifier), P01Mode::both, counter);
+  protect_p01(bytes, static_cast<std::uint16_t>(frame.identifier), P01Mode::both, counter);
   return frame;
 }
 
-std::uint64_t three_words(const std::array<std::int64_t, 3>& value) {
-  return bits_at(as_bits(value[0]), 14, 16) | bits_at(as_bits(value[1]), 30, 16) |
-         bits_at(as_bits(value[2]), 46, 16);
+using Axes = std::span<const CanSignal, 3>;
+
+std::uint64_t axes_bits(Axes axes, const std::array<std::int64_t, 3>& value) {
+  return bits_at(axes[0], as_bits(value[0])) | bits_at(axes[1], as_bits(value[1])) |
+         bits_at(axes[2], as_bits(value[2]));
+}
+
+// The functions below are inlined so that a signal's step and limits become constants of the code:
+// otherwise each call divides by the step.
+[[gnu::always_inline]] inline QuantizedVector quantize_axes(const Vector3& vector,
+                                                            const CanSignal& axis) {
+  return quantize(vector, 1 / axis.step, axis.raw_min(), axis.raw_max());
 }
 
 std::uint64_t position_word(const PoseSample& sample) {
-  const QuantizedVector p = quantize(sample.pose.translation, 1 / k_can_position_step_m,
-                                     -k_position_max - 1, k_position_max);
+  constexpr Axes axes = k_position_message.signals_from<3>("X");
+  const QuantizedVector p = quantize_axes(sample.pose.translation, axes[0]);
   if (!sample.has_pose() || !p.fits) return 0;
-  return bits_at(as_bits(p.value[0]), 12, 17) | bits_at(as_bits(p.value[1]), 29, 17) |
-         bits_at(as_bits(p.value[2]), 46, 17) | std::uint64_t{1} << 63;
+  return axes_bits(axes, p.value) | bits_at(k_position_message.signal("Valid"), 1);
 }
 
 std::uint64_t orientation_word(const PoseSample& sample) {
   if (!sample.has_pose()) return state_at_end(sample.state);
   const SmallestThree q = to_smallest_three(sample.pose.rotation);
   if (!q.valid) return 0;
-  return bits_at(q.left_out, 12, 2) |
-         three_words({q.component[0], q.component[1], q.component[2]}) | state_at_end(sample.state);
+  return bits_at(k_orientation_message.signal("LeftOut"), q.left_out) |
+         axes_bits(k_orientation_message.signals_from<3>("Component0"),
+                   {q.component[0], q.component[1], q.component[2]}) |
+         state_at_end(sample.state);
 }
 
+// Linear and angular velocity differ in their step alone.
 std::uint64_t velocity_word(const PoseSample& sample, const Vector3& velocity, double step) {
+  constexpr Axes axes = k_velocity_message.signals_from<3>("X");
+  constexpr Axes angular = k_angular_velocity_message.signals_from<3>("X");
+  static_assert(axes[0].field == angular[0].field && axes[2].field == angular[2].field &&
+                axes[0].limit == angular[0].limit);
   if (!sample.has_pose()) return state_at_end(sample.state);
-  const QuantizedVector v = quantize(velocity, 1 / step, -k_word_max, k_word_max);
+  const QuantizedVector v = quantize(velocity, 1 / step, axes[0].raw_min(), axes[0].raw_max());
   if (!v.fits) return 0;
-  return three_words(v.value) | state_at_end(sample.state);
+  return axes_bits(axes, v.value) | state_at_end(sample.state);
 }
 
-// Quantises a value that is undefined without a pose; returns `over` then.
-std::uint64_t known(const PoseSample& sample, double value, double step, std::uint64_t over) {
-  return sample.has_pose() ? quantize_or(value, 1 / step, over) : over;
+[[gnu::always_inline]] inline std::uint64_t saturated(double value, const CanSignal& signal) {
+  return quantize_or(value, 1 / signal.step, signal.field.all_ones());
+}
+
+// Quantises a value that is undefined without a pose; returns all ones then.
+[[gnu::always_inline]] inline std::uint64_t known(const PoseSample& sample, double value,
+                                                  const CanSignal& signal) {
+  return sample.has_pose() ? saturated(value, signal) : signal.field.all_ones();
 }
 
 std::uint64_t quality_word(const PoseSample& s) {
-  return bits_at(state_bits(s.state), 12, 3) |
-         bits_at(static_cast<std::uint64_t>(s.registration), 15, 2) |
-         bits_at(marker_count(s), 17, 4) |
-         bits_at(known(s, s.sigma_position_m, k_can_sigma_position_step_m, k_can_sigma_over), 21,
-                 10) |
-         bits_at(
-             known(s, s.sigma_orientation_rad, k_can_sigma_orientation_step_rad, k_can_sigma_over),
-             31, 10) |
-         bits_at(known(s, s.age().seconds(), k_can_age_step_s, k_can_age_over), 41, 11) |
-         bits_at(quantize_or(s.registration_rms_m, 1 / k_can_rms_step_m, k_can_rms_over), 52, 7) |
-         bits_at(s.buttons & k_buttons_mask, 59, 3);
+  constexpr const CanMessageLayout& m = k_quality_message;
+  constexpr const CanSignal& sigma_position = m.signal("SigmaPosition");
+  constexpr const CanSignal& sigma_orientation = m.signal("SigmaOrientation");
+  constexpr const CanSignal& age = m.signal("Age");
+  constexpr const CanSignal& rms = m.signal("RegistrationRms");
+  return bits_at(m.signal("State"), state_bits(s.state)) |
+         bits_at(m.signal("Registration"), static_cast<std::uint64_t>(s.registration)) |
+         bits_at(m.signal("Markers"), marker_count(s)) |
+         bits_at(sigma_position, known(s, s.sigma_position_m, sigma_position)) |
+         bits_at(sigma_orientation, known(s, s.sigma_orientation_rad, sigma_orientation)) |
+         bits_at(age, known(s, s.age().seconds(), age)) |
+         bits_at(rms, saturated(s.registration_rms_m, rms)) |
+         bits_at(m.signal("Buttons"), s.buttons & k_buttons_mask);
 }
 
 // Returns 0, "unknown", if the sum is before 1970 or exceeds an int64.
@@ -105,50 +127,55 @@ FdPose quantize_pose(const PoseSample& s) {
   FdPose pose;
   pose.state = s.state;
   if (!s.has_pose()) return pose;
-  pose.position =
-      quantize(s.pose.translation, 1 / k_can_fd_position_step_m, -k_long_max, k_long_max);
-  pose.velocity = quantize(s.velocity_m_s, 1 / k_can_velocity_step_m_s, -k_word_max, k_word_max);
-  pose.angular_velocity = quantize(s.angular_velocity_rad_s, 1 / k_can_angular_velocity_step_rad_s,
-                                   -k_word_max, k_word_max);
+  constexpr const CanMessageLayout& m = k_fd_message;
+  pose.position = quantize_axes(s.pose.translation, m.signal("X"));
+  pose.velocity = quantize_axes(s.velocity_m_s, m.signal("VelocityX"));
+  pose.angular_velocity = quantize_axes(s.angular_velocity_rad_s, m.signal("AngularVelocityX"));
   const Quaternion& q = s.pose.rotation;
   const std::array<double, 4> component{q.x(), q.y(), q.z(), q.w()};
   const bool fits = pose.position.fits && pose.velocity.fits && pose.angular_velocity.fits &&
                     to_smallest_three(q).valid;
   if (!fits) return {};
+  constexpr const CanSignal& axis = m.signal("RotationX");
   for (std::size_t i = 0; i < 4; ++i)  // of a unit quaternion each component fits
-    pose.rotation[i] = quantize(component[i], k_one_rotation, -k_long_max, k_long_max).value;
+    pose.rotation[i] = quantize(component[i], 1 / axis.step, axis.raw_min(), axis.raw_max()).value;
   return pose;
 }
 
-CanFrame fd(const PoseSample& s, std::uint32_t identifier, std::int64_t unix_offset_ns) {
-  CanFrame frame;
-  frame.identifier = identifier;
-  frame.length = 64;
-  frame.fd = true;
-  frame.bit_rate_switch = true;
+void put_axes(std::span<std::uint8_t> bytes, Axes axes, const std::array<std::int64_t, 3>& value) {
+  put(bytes, axes[0], as_bits(value[0]));
+  put(bytes, axes[1], as_bits(value[1]));
+  put(bytes, axes[2], as_bits(value[2]));
+}
+
+CanFrame fd(const PoseSample& s, std::uint32_t base, std::int64_t unix_offset_ns) {
+  constexpr const CanMessageLayout& m = k_fd_message;
+  constexpr const CanSignal& sigma_position = m.signal("SigmaPosition");
+  constexpr const CanSignal& sigma_orientation = m.signal("SigmaOrientation");
+  constexpr const CanSignal& age = m.signal("Age");
+  constexpr const CanSignal& rms = m.signal("RegistrationRms");
+  CanFrame frame = frame_of(m, base + m.offset);
   const std::span<std::uint8_t> bytes(frame.data);
-  std::size_t at = 3;
-  const auto put = [&](std::uint64_t value, std::size_t size) {
-    put_little_endian(bytes.subspan(at, size), value);
-    at += size;
-  };
   const FdPose pose = quantize_pose(s);
-  put(state_bits(pose.state) | static_cast<std::uint64_t>(s.registration) << 3 |
-          (s.buttons & k_buttons_mask) << 5,
-      1);
-  for (const std::int64_t p : pose.position.value) put(as_bits(p), 4);
-  for (const std::int64_t r : pose.rotation) put(as_bits(r), 4);
-  for (const std::int64_t v : pose.velocity.value) put(as_bits(v), 2);
-  for (const std::int64_t w : pose.angular_velocity.value) put(as_bits(w), 2);
-  put(known(s, s.sigma_position_m, k_can_sigma_position_step_m, k_can_fd_word_over), 2);
-  put(known(s, s.sigma_orientation_rad, k_can_sigma_orientation_step_rad, k_can_fd_word_over), 2);
-  put(known(s, s.age().seconds(), k_can_fd_age_step_s, k_can_fd_word_over), 2);
-  put(marker_count(s), 1);
-  put(quantize_or(s.registration_rms_m, 1 / k_can_rms_step_m, k_can_fd_byte_over), 1);
-  put(unix_time(s.measurement, unix_offset_ns), 8);
-  put(s.frame_sequence, 4);
+  put(bytes, m.signal("State"), state_bits(pose.state));
+  put(bytes, m.signal("Registration"), static_cast<std::uint64_t>(s.registration));
+  put(bytes, m.signal("Buttons"), s.buttons & k_buttons_mask);
+  put_axes(bytes, m.signals_from<3>("X"), pose.position.value);
+  put(bytes, m.signal("RotationX"), as_bits(pose.rotation[0]));
+  put(bytes, m.signal("RotationY"), as_bits(pose.rotation[1]));
+  put(bytes, m.signal("RotationZ"), as_bits(pose.rotation[2]));
+  put(bytes, m.signal("RotationW"), as_bits(pose.rotation[3]));
+  put_axes(bytes, m.signals_from<3>("VelocityX"), pose.velocity.value);
+  put_axes(bytes, m.signals_from<3>("AngularVelocityX"), pose.angular_velocity.value);
+  put(bytes, sigma_position, known(s, s.sigma_position_m, sigma_position));
+  put(bytes, sigma_orientation, known(s, s.sigma_orientation_rad, sigma_orientation));
+  put(bytes, age, known(s, s.age().seconds(), age));
+  put(bytes, m.signal("Markers"), marker_count(s));
+  put(bytes, rms, saturated(s.registration_rms_m, rms));
+  put(bytes, m.signal("MeasurementTime"), unix_time(s.measurement, unix_offset_ns));
+  put(bytes, m.signal("FrameSequence"), s.frame_sequence);
   const auto counter = static_cast<unsigned>(s.tick_number % k_p05_counters);
-  protect_p05(bytes, static_cast<std::uint16_t>(identifier), counter);
+  protect_p05(bytes, static_cast<std::uint16_t>(frame.identifier), counter);
   return frame;
 }
 
@@ -162,18 +189,19 @@ void add_pose_frames(const PoseSample& sample, const CanPacking& packing,
   }
   const std::uint32_t base = packing.base_identifier + k_can_tool_stride * sample.tool;
   if (packing.format == CanFormat::fd) {
-    frames.add(fd(sample, base + k_can_fd_pose, packing.unix_offset_ns));
+    frames.add(fd(sample, base, packing.unix_offset_ns));
     return;
   }
-  const auto add = [&](std::uint32_t offset, std::uint64_t word) {
-    frames.add(classic(base + offset, word, sample.tick_number));
+  const auto add = [&](const CanMessageLayout& message, std::uint64_t word) {
+    frames.add(classic(message, base, word, sample.tick_number));
   };
-  add(k_can_position, position_word(sample));
-  add(k_can_orientation, orientation_word(sample));
-  add(k_can_velocity, velocity_word(sample, sample.velocity_m_s, k_can_velocity_step_m_s));
-  add(k_can_angular_velocity,
-      velocity_word(sample, sample.angular_velocity_rad_s, k_can_angular_velocity_step_rad_s));
-  add(k_can_quality, quality_word(sample));
+  add(k_position_message, position_word(sample));
+  add(k_orientation_message, orientation_word(sample));
+  add(k_velocity_message,
+      velocity_word(sample, sample.velocity_m_s, k_velocity_message.signal("X").step));
+  add(k_angular_velocity_message, velocity_word(sample, sample.angular_velocity_rad_s,
+                                                k_angular_velocity_message.signal("X").step));
+  add(k_quality_message, quality_word(sample));
 }
 
 }  // namespace glint

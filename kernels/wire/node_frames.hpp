@@ -46,9 +46,8 @@ struct OverrunEmergency {
 };
 [[nodiscard]] CanFrame overrun_frame(unsigned node, const OverrunEmergency& overrun) noexcept;
 
-// Offsets from the base identifier of tool 0.
-inline constexpr std::uint32_t k_can_time_sync = 0xE;
-inline constexpr std::uint32_t k_can_time_follow_up = 0xF;
+// Emergency frame for lost output: error code FF80 + kind, the kind in the tool's byte, the rest 0.
+[[nodiscard]] CanFrame lost_output_frame(unsigned node, std::uint8_t kind) noexcept;
 
 // Both frames of one pair carry the same sequence counter (0..15) and domain.
 struct TimeSync {

@@ -12,10 +12,12 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/nonblocking.hpp"
+#include "kernels/wire/can_messages.hpp"
 
 namespace glint {
 
-inline constexpr double k_smallest_three_step = 2.1580187e-5;  // x 32767 = 0.70712 > 1/sqrt(2)
+inline constexpr double k_smallest_three_step =
+    can_message("Orientation").signal("Component0").step;
 
 struct SmallestThree {
   std::uint8_t left_out = 3;                // 0..3: x,y,z,w; this component is positive

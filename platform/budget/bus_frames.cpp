@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
-#include "kernels/wire/can_frames.hpp"
-#include "kernels/wire/node_frames.hpp"
+#include "kernels/wire/can_messages.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/input_error.hpp"
 #include "schedules/assessment.hpp"
 
 namespace glint {
 namespace {
-
-constexpr std::int64_t k_heartbeat_gap_ns = 100'000'000;
-constexpr std::int64_t k_time_pair_gap_ns = 1'000'000'000;
-constexpr std::uint32_t k_heartbeat_identifier = 0x700;  // CiA 301
-constexpr std::uint32_t k_emergency_identifier = 0x80;
 
 std::int64_t ns_of(double ms) { return static_cast<std::int64_t>(ms * 1e6 + 0.5); }
 
@@ -93,47 +88,56 @@ class ForeignReader {
   std::vector<CanMessage> frames_;
 };
 
+// "AngularVelocity" -> "angular velocity".
+std::string words_of(std::string_view name) {
+  std::string words;
+  for (const char letter : name) {
+    const bool upper = letter >= 'A' && letter <= 'Z';
+    if (upper && !words.empty()) words += ' ';
+    words += upper ? static_cast<char>(letter - 'A' + 'a') : letter;
+  }
+  return words;
+}
+
+CanMessage own_frame(const CanMessageLayout& message, const Cell& cell, int tool) {
+  const std::int64_t tick_ns = static_cast<std::int64_t>(1e9 / cell.tick_hz);
+  const CanAddress address{cell.can.base_id, static_cast<std::uint32_t>(cell.can.node)};
+  CanMessage frame;
+  frame.name = words_of(message.name);
+  frame.identifier = identifier_of(message, address, tool);
+  frame.shape = shape_of(message);
+  frame.period_ns =
+      message.period_ms == k_can_each_tick ? tick_ns : milliseconds(message.period_ms).nanoseconds;
+  frame.deadline_ns = tick_ns;
+  frame.node = k_own_can_node;
+  frame.fifo = true;
+  const std::string number = "tool " + std::to_string(tool + 1);
+  if (message.rule == CanIdentifierRule::of_tool) frame.name = number + " " + frame.name;
+  if (message.period_ms == k_can_on_event) {
+    frame.name += ", " + number;
+    // Lost; found one tick later at the earliest; not lost again within lost_after.
+    frame.period_ns = cell.lost_after.nanoseconds / 2;
+    frame.jitter_ns = std::max<std::int64_t>(0, frame.period_ns - tick_ns);
+    frame.deadline_ns += frame.jitter_ns;
+  }
+  return frame;
+}
+
 }  // namespace
 
 std::vector<CanMessage> own_frames_of(const Cell& cell, int tools) {
+  const CanFormat format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  const auto sent = [&](const CanMessageLayout& m) { return m.sent_in(format); };
   std::vector<CanMessage> frames;
-  const std::int64_t tick_ns = static_cast<std::int64_t>(1e9 / cell.tick_hz);
-  const auto add = [&](const std::string& name, std::uint32_t identifier, CanFrameShape shape,
-                       std::int64_t gap_ns) {
-    CanMessage frame;
-    frame.name = name;
-    frame.identifier = identifier;
-    frame.shape = shape;
-    frame.period_ns = gap_ns;
-    frame.deadline_ns = tick_ns;
-    frame.node = k_own_can_node;
-    frame.fifo = true;
-    frames.push_back(frame);
-  };
-  const std::uint32_t base = cell.can.base_id;
   for (int t = 0; t < tools; ++t) {
-    const std::uint32_t first = base + static_cast<std::uint32_t>(t) * k_can_tool_stride;
-    const std::string tool = "tool " + std::to_string(t + 1);
-    if (cell.can.fd) {
-      add(tool + " pose", first + k_can_fd_pose, {64, false, true, true}, tick_ns);
-      continue;
+    for (const CanMessageLayout& m : k_can_messages) {
+      if (sent(m) && m.rule == CanIdentifierRule::of_tool) frames.push_back(own_frame(m, cell, t));
     }
-    add(tool + " position", first + k_can_position, {}, tick_ns);
-    add(tool + " orientation", first + k_can_orientation, {}, tick_ns);
-    add(tool + " velocity", first + k_can_velocity, {}, tick_ns);
-    add(tool + " angular velocity", first + k_can_angular_velocity, {}, tick_ns);
-    add(tool + " quality", first + k_can_quality, {}, tick_ns);
   }
-  const auto node = static_cast<std::uint32_t>(cell.can.node);
-  add("heartbeat", k_heartbeat_identifier + node, {.data_bytes = 1}, k_heartbeat_gap_ns);
-  add("time", base + k_can_time_sync, {}, k_time_pair_gap_ns);
-  add("time follow-up", base + k_can_time_follow_up, {}, k_time_pair_gap_ns);
-  for (int t = 0; t < tools; ++t) {
-    // Lost; found one tick later at the earliest; not lost again within lost_after.
-    add("emergency, tool " + std::to_string(t + 1), k_emergency_identifier + node, {},
-        cell.lost_after.nanoseconds / 2);
-    frames.back().jitter_ns = std::max<std::int64_t>(0, cell.lost_after.nanoseconds / 2 - tick_ns);
-    frames.back().deadline_ns += frames.back().jitter_ns;
+  for (const CanMessageLayout& m : k_can_messages) {
+    if (!sent(m) || m.rule == CanIdentifierRule::of_tool) continue;
+    const int times = m.period_ms == k_can_on_event ? tools : 1;
+    for (int t = 0; t < times; ++t) frames.push_back(own_frame(m, cell, t));
   }
   return frames;
 }

@@ -1,17 +1,17 @@
 #include "platform/cells/cell_can.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "kernels/wire/can_frames.hpp"
+#include "kernels/wire/can_messages.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
 namespace {
-
-// CiA 301: emergencies and heartbeats of a node.
-constexpr std::uint32_t k_emergencies = 0x80;
-constexpr std::uint32_t k_heartbeats = 0x700;
 
 std::string hexadecimal(std::uint32_t identifier) {
   char text[16];
@@ -19,21 +19,56 @@ std::string hexadecimal(std::uint32_t identifier) {
   return text;
 }
 
+[[noreturn]] void refuse(const TomlReader& reader, const Cell& cell, const char* key,
+                         const std::string& what) {
+  throw InputError(cell.file + ":" + std::to_string(reader.line_of(key)) + ": can." + key + what);
+}
+
+CanAddress address_of(const CanSettings& can) {
+  return {can.base_id, static_cast<std::uint32_t>(can.node)};
+}
+
+std::vector<std::uint32_t> node_identifiers(const CanAddress& address) {
+  std::vector<std::uint32_t> identifiers;
+  for (const CanMessageLayout& message : k_can_messages) {
+    if (message.rule == CanIdentifierRule::of_node)
+      identifiers.push_back(identifier_of(message, address));
+  }
+  return identifiers;
+}
+
+// First and last identifier of the tools.
+std::string tool_range(const Cell& cell) {
+  const std::uint32_t base = cell.can.base_id;
+  const auto tools = static_cast<std::uint32_t>(cell.tools.count);
+  return hexadecimal(base) + " to " + hexadecimal(base + tools * k_can_tool_stride - 1);
+}
+
+// A message of the node must not have an identifier of a tool's.
+void check_base(const TomlReader& reader, const Cell& cell) {
+  const CanAddress address = address_of(cell.can);
+  for (const std::uint32_t identifier : node_identifiers(address)) {
+    if (!is_tool_can_identifier(identifier, address, cell.tools.count)) continue;
+    refuse(reader, cell, "base_id",
+           " is " + hexadecimal(address.base) + ": the tools' identifiers " + tool_range(cell) +
+               " contain " + hexadecimal(identifier) + " of can.node " +
+               std::to_string(address.node) + "; expected another base_id or node");
+  }
+}
+
 void read_buttons(TomlReader& reader, Cell& cell) {
   const auto identifier =
       static_cast<std::uint32_t>(reader.integer("buttons", 0, 1, k_can_identifier_max));
   if (identifier == 0) return;
-  const CanSettings& can = cell.can;
-  const auto node = static_cast<std::uint32_t>(can.node);
-  const std::uint32_t last =
-      can.base_id + static_cast<std::uint32_t>(cell.tools.count) * k_can_tool_stride - 1;
-  if ((identifier >= can.base_id && identifier <= last) || identifier == k_emergencies + node ||
-      identifier == k_heartbeats + node) {
-    throw InputError(cell.file + ":" + std::to_string(reader.line_of("buttons")) +
-                     ": can.buttons is " + hexadecimal(identifier) +
-                     ", with which Glint sends; expected none of " + hexadecimal(can.base_id) +
-                     " to " + hexadecimal(last) + ", " + hexadecimal(k_emergencies + node) +
-                     " and " + hexadecimal(k_heartbeats + node));
+  const CanAddress address = address_of(cell.can);
+  const std::vector<std::uint32_t> of_node = node_identifiers(address);
+  if (is_tool_can_identifier(identifier, address, cell.tools.count) ||
+      std::ranges::find(of_node, identifier) != of_node.end()) {
+    std::string expected = tool_range(cell);
+    for (const std::uint32_t other : of_node) expected += ", " + hexadecimal(other);
+    refuse(reader, cell, "buttons",
+           " is " + hexadecimal(identifier) + ", with which Glint sends; expected none of " +
+               expected);
   }
   cell.can.buttons = identifier;
 }
@@ -51,6 +86,7 @@ void read_can(const toml::table* table, Cell& cell) {
   can.bit_rate = reader.integer("bit_rate", can.bit_rate, 10'000, 1'000'000);
   can.data_bit_rate = reader.integer("data_bit_rate", can.data_bit_rate, 10'000, 8'000'000);
   can.node = static_cast<int>(reader.integer("node", can.node, 1, 127));
+  check_base(reader, cell);
   read_buttons(reader, cell);
   reader.done();
 }

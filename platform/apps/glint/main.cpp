@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   glint::add_reference(app, exit_code);
   glint::add_path(app, exit_code);
   glint::add_inspect(app, exit_code);
+  glint::add_can(app, exit_code);
   glint::add_export(app, exit_code);
   glint::add_budget(app, exit_code);
   glint::add_cell_check(app);

@@ -24,16 +24,6 @@ struct LossSources {
   LossCounters* counters = nullptr;
 };
 
-// CANopen emergency: identifier 0x80 + node, error code FF80 + kind, error register 81, the kind in
-// the tool's byte, the rest 0.
-[[nodiscard]] inline CanFrame loss_frame(unsigned node, LossKind kind) noexcept {
-  constexpr std::uint8_t k_losses = 0x80;  // in the range of device-specific error codes
-  const auto number = static_cast<std::uint8_t>(kind);
-  CanFrame frame = overrun_frame(node, {number, 0, Reason::none, 0});
-  frame.data[0] = static_cast<std::uint8_t>(k_losses + number);
-  return frame;
-}
-
 class LossMonitor {
  public:
   static constexpr Duration k_emergency_gap = milliseconds(1000);

@@ -185,7 +185,7 @@ void TickGroup::send_emergency(Time tick) noexcept {
     return;
   }
   if (const auto kind = losses_.next_due_report(tick)) {
-    (void)send_one(loss_frame(node_, *kind), now_());
+    (void)send_one(lost_output_frame(node_, static_cast<std::uint8_t>(*kind)), now_());
   }
 }
 

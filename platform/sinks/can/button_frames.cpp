@@ -5,7 +5,15 @@
 #include <algorithm>
 #include <cstring>
 
+#include "kernels/wire/can_messages.hpp"
+
 namespace glint {
+namespace {
+
+constexpr const CanMessageLayout& k_buttons_message = can_message("PenButtons");
+static_assert(k_buttons_message.signals.size() == k_button_count);
+
+}  // namespace
 
 std::optional<CanFrame> frame_of_socketcan(std::span<const std::uint8_t> bytes) {
   if (bytes.size() != CAN_MTU && bytes.size() != CANFD_MTU) return {};
@@ -34,7 +42,7 @@ void ButtonFrames::receive(const std::optional<CanFrame>& frame, Time arrived) {
   received_.fetch_add(1, std::memory_order_relaxed);
   last_ = arrived;
   for (std::size_t i = 0; i < held_.size(); ++i) {
-    const bool now = (frame->data[0] >> i & 1U) != 0;
+    const bool now = unsigned_of(frame->bytes(), k_buttons_message.signals[i]) != 0;
     if (now == held_[i]) continue;
     held_[i] = now;
     if (on_button_) on_button_({arrived, static_cast<Button>(i), now});

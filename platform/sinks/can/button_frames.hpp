@@ -1,7 +1,7 @@
 // Decoder of the pen's button frame on CAN: the buttons held, sent periodically or at each change.
 //
-//   identifier as set in the cell, 11 bits, classic or FD, at least one byte of data
-//   byte 0    bit 0 draw | bit 1 delete_last | bit 2 undo | bit 3 finish; 1: held
+// Message PenButtons of kernels/wire/can_messages.hpp: identifier as set in the cell, 11 bits,
+// classic or FD, at least one byte of data; a bit for each button, in the order of Button; 1: held.
 // Further bytes are ignored, so that any digital input module with this layout works. CANopen
 // modules (CiA 401) send inputs 1 to 8 in the first byte of 0x180 + node. Such modules add neither
 // counter nor checksum, so none is required: the bus' own checksum protects the frame.

@@ -86,13 +86,13 @@ TEST(CanDecode, ReadsEachSignedFieldFromItsOwnBits) {
       const auto bits = static_cast<std::uint64_t>(value);
       const CanFrame words = classic(bits_at(bits, 14 + 16 * axis, 16));
       EXPECT_EQ(decode_velocity(words).value.velocity,
-                k_can_velocity_step_m_s * static_cast<double>(value) * unit);
+                k_velocity_message.signal("X").step * static_cast<double>(value) * unit);
       EXPECT_EQ(decode_angular_velocity(words).value.velocity,
-                k_can_angular_velocity_step_rad_s * static_cast<double>(value) * unit);
+                k_angular_velocity_message.signal("X").step * static_cast<double>(value) * unit);
       EXPECT_EQ(decode_velocity(words).value.state, TrackState::none);
       const CanFrame position = classic(bits_at(bits, 12 + 17 * axis, 17));
       EXPECT_EQ(decode_position(position).value.position_m,
-                k_can_position_step_m * static_cast<double>(value) * unit);
+                k_position_message.signal("X").step * static_cast<double>(value) * unit);
       EXPECT_FALSE(decode_position(position).value.valid);
     }
   }

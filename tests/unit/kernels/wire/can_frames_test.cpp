@@ -57,12 +57,12 @@ TEST(CanFrames, ComeBackWithinHalfAStep) {
     ASSERT_TRUE(position && orientation && velocity && angular && quality);
     EXPECT_TRUE(position.value.valid);
     EXPECT_LE((position.value.position_m - s.pose.translation).cwiseAbs().maxCoeff(),
-              k_half * k_can_position_step_m);
+              k_half * k_position_message.signal("X").step);
     EXPECT_GT(std::abs(orientation.value.rotation.dot(s.pose.rotation)), 1 - 1e-9);
     EXPECT_LE((velocity.value.velocity - s.velocity_m_s).cwiseAbs().maxCoeff(),
-              k_half * k_can_velocity_step_m_s);
+              k_half * k_velocity_message.signal("X").step);
     EXPECT_LE((angular.value.velocity - s.angular_velocity_rad_s).cwiseAbs().maxCoeff(),
-              k_half * k_can_angular_velocity_step_rad_s);
+              k_half * k_angular_velocity_message.signal("X").step);
     const DecodedQuality& q = quality.value;
     EXPECT_EQ(q.state, s.state);
     EXPECT_EQ(velocity.value.state, s.state);
@@ -71,11 +71,13 @@ TEST(CanFrames, ComeBackWithinHalfAStep) {
     EXPECT_EQ(q.registration, s.registration);
     EXPECT_EQ(q.markers, std::popcount(s.marker_mask));
     EXPECT_EQ(q.buttons, s.buttons);
-    EXPECT_NEAR(q.sigma_position_m, s.sigma_position_m, k_half * k_can_sigma_position_step_m);
+    EXPECT_NEAR(q.sigma_position_m, s.sigma_position_m,
+                k_half * k_quality_message.signal("SigmaPosition").step);
     EXPECT_NEAR(q.sigma_orientation_rad, s.sigma_orientation_rad,
-                k_half * k_can_sigma_orientation_step_rad);
-    EXPECT_NEAR(q.age_s, s.age().seconds(), k_half * k_can_age_step_s);
-    EXPECT_NEAR(q.registration_rms_m, s.registration_rms_m, k_half * k_can_rms_step_m);
+                k_half * k_quality_message.signal("SigmaOrientation").step);
+    EXPECT_NEAR(q.age_s, s.age().seconds(), k_half * k_quality_message.signal("Age").step);
+    EXPECT_NEAR(q.registration_rms_m, s.registration_rms_m,
+                k_half * k_quality_message.signal("RegistrationRms").step);
   }
 }
 

@@ -34,13 +34,13 @@ TEST(FdFrame, ComesBackWithinHalfAStep) {
     ASSERT_TRUE(decoded);
     const DecodedFdPose& pose = decoded.value;
     EXPECT_LE((pose.position_m - s.pose.translation).cwiseAbs().maxCoeff(),
-              k_half * k_can_fd_position_step_m);
+              k_half * k_fd_message.signal("X").step);
     EXPECT_LE((pose.rotation.coeffs() - s.pose.rotation.coeffs()).cwiseAbs().maxCoeff(),
-              4 * k_can_fd_rotation_step);
+              4 * k_fd_message.signal("RotationX").step);
     EXPECT_LE((pose.velocity_m_s - s.velocity_m_s).cwiseAbs().maxCoeff(),
-              k_half * k_can_velocity_step_m_s);
+              k_half * k_velocity_message.signal("X").step);
     EXPECT_LE((pose.angular_velocity_rad_s - s.angular_velocity_rad_s).cwiseAbs().maxCoeff(),
-              k_half * k_can_angular_velocity_step_rad_s);
+              k_half * k_angular_velocity_message.signal("X").step);
     EXPECT_EQ(pose.unix_measurement_ns, s.measurement.nanoseconds + k_offset);
     EXPECT_EQ(pose.frame_sequence, s.frame_sequence);
     const DecodedQuality& q = pose.quality;
@@ -49,11 +49,13 @@ TEST(FdFrame, ComesBackWithinHalfAStep) {
     EXPECT_EQ(q.registration, s.registration);
     EXPECT_EQ(q.buttons, s.buttons);
     EXPECT_EQ(q.markers, std::popcount(s.marker_mask));
-    EXPECT_NEAR(q.sigma_position_m, s.sigma_position_m, k_half * k_can_sigma_position_step_m);
+    EXPECT_NEAR(q.sigma_position_m, s.sigma_position_m,
+                k_half * k_quality_message.signal("SigmaPosition").step);
     EXPECT_NEAR(q.sigma_orientation_rad, s.sigma_orientation_rad,
-                k_half * k_can_sigma_orientation_step_rad);
-    EXPECT_NEAR(q.age_s, s.age().seconds(), k_half * k_can_fd_age_step_s);
-    EXPECT_NEAR(q.registration_rms_m, s.registration_rms_m, k_half * k_can_rms_step_m);
+                k_half * k_quality_message.signal("SigmaOrientation").step);
+    EXPECT_NEAR(q.age_s, s.age().seconds(), k_half * k_fd_message.signal("Age").step);
+    EXPECT_NEAR(q.registration_rms_m, s.registration_rms_m,
+                k_half * k_quality_message.signal("RegistrationRms").step);
   }
 }
 
@@ -179,7 +181,8 @@ TEST(FdFrame, SendsALostToolWithoutAPoseAndItsFiguresAsUnknown) {
   EXPECT_EQ(pose.quality.sigma_position_m, -1);
   EXPECT_EQ(pose.quality.sigma_orientation_rad, -1);
   EXPECT_EQ(pose.quality.age_s, -1);
-  EXPECT_NEAR(pose.quality.registration_rms_m, s.registration_rms_m, k_half * k_can_rms_step_m);
+  EXPECT_NEAR(pose.quality.registration_rms_m, s.registration_rms_m,
+              k_half * k_quality_message.signal("RegistrationRms").step);
 }
 
 // All ones mean "this or more"; the value below is the largest that is encoded exactly.
@@ -188,14 +191,15 @@ TEST(FdFrame, SendsFiguresBeyondTheirFieldsAsUnknown) {
   for (const bool beyond : {false, true}) {
     const double last = beyond ? 0xFFFF : 0xFFFE;
     PoseSample s = random_sample(random);
-    s.sigma_position_m = last * k_can_sigma_position_step_m;
-    s.sigma_orientation_rad = last * k_can_sigma_orientation_step_rad;
+    s.sigma_position_m = last * k_quality_message.signal("SigmaPosition").step;
+    s.sigma_orientation_rad = last * k_quality_message.signal("SigmaOrientation").step;
     s.measurement = s.tick - microseconds(100) * static_cast<std::int64_t>(last);
-    s.registration_rms_m = (beyond ? 0xFF : 0xFE) * k_can_rms_step_m;
+    s.registration_rms_m =
+        (beyond ? 0xFF : 0xFE) * k_quality_message.signal("RegistrationRms").step;
     const DecodedQuality q = decode_fd_pose(packed(s)).value.quality;
     EXPECT_NEAR(q.sigma_position_m, beyond ? -1 : s.sigma_position_m, 1e-12);
     EXPECT_NEAR(q.sigma_orientation_rad, beyond ? -1 : s.sigma_orientation_rad, 1e-12);
-    EXPECT_NEAR(q.age_s, beyond ? -1 : last * k_can_fd_age_step_s, 1e-9);
+    EXPECT_NEAR(q.age_s, beyond ? -1 : last * k_fd_message.signal("Age").step, 1e-9);
     EXPECT_NEAR(q.registration_rms_m, beyond ? -1 : s.registration_rms_m, 1e-12);
   }
 }

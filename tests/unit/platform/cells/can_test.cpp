@@ -23,7 +23,7 @@ TEST(CellCan, TakesTheIdentifierOfButtonsBesideItsOwn) {
 
 TEST(CellCan, RefusesAnIdentifierOfButtonsWithWhichItSends) {
   const std::string expected =
-      ", with which Glint sends; expected none of 0x1A0 to 0x1AF, 0xA0 and 0x720";
+      ", with which Glint sends; expected none of 0x1A0 to 0x1AF, 0x720, 0xA0";
   for (const char* const taken : {"0x1A0", "0x1A4", "0x1AE", "0x1AF", "0xA0", "0x720"}) {
     EXPECT_EQ(test::error_message_for("[can]\nbuttons = " + std::string(taken) + "\n"),
               "cell.toml:2: can.buttons is " + std::string(taken) + expected);
@@ -32,8 +32,22 @@ TEST(CellCan, RefusesAnIdentifierOfButtonsWithWhichItSends) {
   const std::string two = "tools = [\"pen\", \"board\"]\n[can]\n";
   EXPECT_EQ(test::error_message_for(two + "buttons = 0x1BF\n"),
             "cell.toml:3: can.buttons is 0x1BF, with which Glint sends; expected none of 0x1A0 to "
-            "0x1BF, 0xA0 and 0x720");
+            "0x1BF, 0x720, 0xA0");
   EXPECT_EQ(test::error_message_for(two + "base_id = 0x200\nbuttons = 0x1BF\n"), "accepted");
+}
+
+TEST(CellCan, RefusesABaseWithWhoseToolsItsNodeClashes) {
+  const std::string rest = "; expected another base_id or node";
+  EXPECT_EQ(
+      test::error_message_for("[can]\nbase_id = 0x700\nnode = 15\n"),
+      "cell.toml:2: can.base_id is 0x700: the tools' identifiers 0x700 to 0x70F contain 0x70F "
+      "of can.node 15" +
+          rest);
+  EXPECT_EQ(test::error_message_for("[can]\nbase_id = 0x90\nnode = 16\n"),
+            "cell.toml:2: can.base_id is 0x90: the tools' identifiers 0x90 to 0x9F contain 0x90 of "
+            "can.node 16" +
+                rest);
+  EXPECT_EQ(test::error_message_for("[can]\nbase_id = 0x90\nnode = 32\n"), "accepted");
 }
 
 TEST(CellCan, RefusesAnIdentifierOfButtonsBeyondElevenBits) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "platform/lab/baseline/seed_method.hpp"
@@ -99,7 +101,7 @@ class KeptFrames final : public CanSink {
   }
   // Times of the emergencies for a loss of this kind.
   [[nodiscard]] std::vector<Time> emergencies(LossKind kind) const {
-    const CanFrame wanted = loss_frame(32, kind);
+    const CanFrame wanted = lost_output_frame(32, static_cast<std::uint8_t>(kind));
     std::vector<Time> found;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].identifier == wanted.identifier && frames[i].data == wanted.data) {
@@ -115,6 +117,16 @@ class KeptFrames final : public CanSink {
   std::size_t accepted_max_;
   std::uint64_t refused_ = 0;
 };
+
+TEST(LossEmergency, HasANameOfEachKindInTheTableOfMessages) {
+  const CanSignal& lost = can_message("Emergency").signal("LostOutput");
+  ASSERT_EQ(lost.names.size() + 1, k_loss_kinds);  // a CAN loss is not sent on CAN
+  for (const CanValueName& name : lost.names) {
+    std::string kind(name_of(static_cast<LossKind>(name.value)));
+    for (char& letter : kind) letter = static_cast<char>(std::tolower(letter));
+    EXPECT_EQ(name.name, kind) << name.value;
+  }
+}
 
 TEST(LossEmergency, IsAtMostOneFrameASecondAndKind) {
   const TemporaryFolder folder;
@@ -164,7 +176,7 @@ TEST(LossEmergency, IsNotSentForCanItself) {
 }
 
 TEST(LossEmergency, NamesItsKindInAnErrorCodeOfItsOwn) {
-  const CanFrame frame = loss_frame(32, LossKind::files);
+  const CanFrame frame = lost_output_frame(32, static_cast<std::uint8_t>(LossKind::files));
   EXPECT_EQ(frame.identifier, 0xA0u);
   EXPECT_EQ(frame.length, 8);
   const std::array<std::uint8_t, 8> expected{0x83, 0xFF, 0x81, 3, 0, 0, 0, 0};

@@ -74,10 +74,10 @@ inline void read_bus(const std::string& file, Duration unix_offset, OverrunLog& 
     const std::int64_t since_ns = record->unix_ns - unix_offset.nanoseconds + k_tick_ns / 2;
     const auto tick = static_cast<std::uint32_t>(since_ns / k_tick_ns);
     if (frame.identifier >= k_can_base_default &&
-        frame.identifier <= k_can_base_default + k_can_quality) {
+        frame.identifier <= k_can_base_default + k_quality_message.offset) {
       ++log.bus[tick].frames;
     }
-    if (frame.identifier == k_can_base_default + k_can_quality) {
+    if (frame.identifier == k_can_base_default + k_quality_message.offset) {
       const auto quality = decode_quality(frame);
       ASSERT_TRUE(quality);
       log.bus[tick].state = quality.value.state;

@@ -1,6 +1,6 @@
-"""Button frames encoded by canmatrix with the DBC file must be heard as what they say.
+"""Button frames that canmatrix encodes with a cell's DBC file are decoded as encoded.
 
-    dbc_buttons.py READ_KNOWN_BUTTONS GLINT_DBC
+    dbc_buttons.py READ_KNOWN_BUTTONS GLINT
 Exit 0: all as encoded; 1: something differs; 77: canmatrix is not installed.
 """
 import contextlib
@@ -20,12 +20,17 @@ except ImportError:
 
 BUTTONS = ("Draw", "DeleteLast", "Undo", "Finish")
 FRAMES = 200
+IDENTIFIER = 0x19F
 
 
 def main():
-    reader, dbc = sys.argv[1:]
-    with contextlib.redirect_stdout(io.StringIO()):
-        message = canmatrix.formats.loadp_flat(dbc).frame_by_name("PenButtons")
+    reader, glint = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+        cell, dbc = pathlib.Path(folder) / "cell.toml", pathlib.Path(folder) / "cell.dbc"
+        cell.write_text(f"[can]\nbuttons = {IDENTIFIER}\n")
+        subprocess.run([glint, "can", "dbc", "--config", cell, "--out", dbc], check=True,
+                       stdout=subprocess.DEVNULL)
+        message = canmatrix.formats.loadp_flat(str(dbc)).frame_by_name("PenButtons")
     draws, lines, expected = random.Random(3), [], []
     before = dict.fromkeys(BUTTONS, 0)
     for number in range(FRAMES):
@@ -41,7 +46,8 @@ def main():
                                capture_output=True, check=False)
     found = heard.stdout.split("\n")[:-1]
     print(f"{len(found)} changes heard of {len(expected)} in {FRAMES} frames, exit {heard.returncode}")
-    return 0 if heard.returncode == 0 and found == expected and expected else 1
+    same = found == expected and message.arbitration_id.id == IDENTIFIER
+    return 0 if heard.returncode == 0 and same and expected else 1
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
-// write_reference_samples FOLDER: writes a CAN log of known poses, classic and FD, and the poses as
-// one JSON object a line. The reader of the log must not share code with its writer.
+// write_known_samples FOLDER: writes a CAN log with every kind of frame that Glint sends, and the
+// values of each as one JSON object a line. The reader of the log must not share code with its
+// writer.
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -37,7 +39,7 @@ void print(std::FILE* file, const PoseSample& s) {
                q.w());
   std::fprintf(file, "\"sigma_position_m\": %.17g, \"sigma_orientation_rad\": %.17g, ",
                s.sigma_position_m, s.sigma_orientation_rad);
-  std::fprintf(file, "\"registration_rms_m\": %.17g, \"age_ns\": %lld, \"unix_ns\": %lld}\n",
+  std::fprintf(file, "\"registration_rms_m\": %.17g, \"age_ns\": %lld, \"unix_ns\": %lld, ",
                s.registration_rms_m, static_cast<long long>(s.age().nanoseconds),
                static_cast<long long>(s.measurement.nanoseconds + k_unix_offset_ns));
 }
@@ -53,9 +55,34 @@ PoseSample edge_sample(int edge, std::mt19937& random) {
   if (edge == 5) s.sigma_position_m = s.sigma_orientation_rad = s.registration_rms_m = 2;
   if (edge == 6) s.state = TrackState::lost;
   if (edge == 7) s.state = TrackState::none;
+  if (edge == 8) s.pose.rotation = Quaternion(0.1, 0.2, -0.3, 0.9).normalized();
   return s;
 }
-constexpr int k_edges = 8;
+constexpr int k_edges = 9;
+
+constexpr std::array k_node_states{CanNodeState::boot_up, CanNodeState::pre_operational,
+                                   CanNodeState::operational, CanNodeState::stopped};
+
+// The values of the node's frames after the sample's, which cycle through all kinds.
+struct NodeValues {
+  CanNodeState state;
+  OverrunEmergency overrun;
+  std::uint8_t lost_output;
+};
+
+NodeValues node_values(int i) {
+  return {k_node_states[static_cast<std::size_t>(i % 4)],
+          {static_cast<std::uint8_t>(i % 2), static_cast<std::uint8_t>(1 + i / 2 % 2),
+           static_cast<Reason>(static_cast<int>(Reason::overrun_skipped) + i % 4),
+           static_cast<std::uint8_t>(i % 256)},
+          static_cast<std::uint8_t>(1 + i % 3)};
+}
+
+void print(std::FILE* file, const NodeValues& v) {
+  std::fprintf(file, "\"node_state\": %d, \"overrun\": [%d, %d, %d, %d], \"lost_output\": %d}\n",
+               static_cast<int>(v.state), v.overrun.group, v.overrun.kind,
+               static_cast<int>(v.overrun.reason), v.overrun.after_node, v.lost_output);
+}
 
 }  // namespace
 
@@ -71,14 +98,20 @@ int main(int count, char** arguments) {
 
   std::mt19937 random(51);
   for (int i = 0; i < k_random_samples + k_edges; ++i) {
-    const PoseSample s =
+    PoseSample s =
         i < k_random_samples ? random_sample(random) : edge_sample(i - k_random_samples, random);
+    s.reason = static_cast<Reason>(static_cast<std::size_t>(i) % k_reasons);
+    if (is_overrun(s.reason)) s.state = TrackState::lost;  // a tool that an overrun stopped
+    const NodeValues node = node_values(i);
     print(truth, s);
+    print(truth, node);
     CanFrames frames;
     for (const CanFormat format : {CanFormat::classic, CanFormat::fd})
       add_pose_frames(s, {format, k_can_base_default, k_unix_offset_ns}, frames);
-    frames.add(heartbeat_frame(32, CanNodeState::operational));
+    frames.add(heartbeat_frame(32, node.state));
     frames.add(emergency_frame(32, s));
+    frames.add(overrun_frame(32, node.overrun));
+    frames.add(lost_output_frame(32, node.lost_output));
     const std::int64_t unix_ns = s.measurement.nanoseconds + k_unix_offset_ns;
     const auto counter = static_cast<std::uint8_t>(i % 16);
     frames.add(time_sync_frame({}, counter, unix_ns).value);
