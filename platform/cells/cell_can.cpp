@@ -29,11 +29,11 @@ void read_buttons(TomlReader& reader, Cell& cell) {
       can.base_id + static_cast<std::uint32_t>(cell.tools.count) * k_can_tool_stride - 1;
   if ((identifier >= can.base_id && identifier <= last) || identifier == k_emergencies + node ||
       identifier == k_heartbeats + node) {
-    throw InputError(cell.file + ":" + std::to_string(reader.line_of("buttons")) +
-                     ": can.buttons is " + hexadecimal(identifier) +
-                     ", with which Glint sends; expected none of " + hexadecimal(can.base_id) +
-                     " to " + hexadecimal(last) + ", " + hexadecimal(k_emergencies + node) +
-                     " and " + hexadecimal(k_heartbeats + node));
+    throw InputError(
+        cell.file + ":" + std::to_string(reader.line_of("buttons")) + ": can.buttons is " +
+        hexadecimal(identifier) + ", an identifier that Glint sends; expected none of " +
+        hexadecimal(can.base_id) + " to " + hexadecimal(last) + ", " +
+        hexadecimal(k_emergencies + node) + " and " + hexadecimal(k_heartbeats + node));
   }
   cell.can.buttons = identifier;
 }

@@ -117,7 +117,7 @@ TEST_F(CameraCalibration, SaysThatTheBoardMayHaveAnotherSizeOrHardlyTilted) {
   test::expect_input_error([&] { (void)calibrate_camera(flat, settings); }, {"tilt the board"});
   test::expect_input_error(
       [&] { (void)calibrate_camera({write("no.png", "no picture")}, settings); },
-      {"no.png", "no picture"});
+      {"no.png", "not an image"});
 }
 
 TEST_F(CameraCalibration, RefusesTablesThatHoldNoRays) {
