@@ -68,10 +68,12 @@ TEST_F(ReferenceCommand, RefusesAGuessInAnotherFrameThanItsCameras) {
   });
   EXPECT_EQ(code, 2);
   const std::string words = command.words();
-  EXPECT_NE(words.find("glint: rt/initialpose: a guess in frame \"map\"; expected T_camera_base in "
-                       "\"hmd_tof_optical\", the frame_id of " +
-                       path("camera.yaml")),
-            std::string::npos)
+  EXPECT_NE(
+      words.find(
+          "glint: rt/initialpose: an initial pose in frame \"map\"; expected T_camera_base in "
+          "\"hmd_tof_optical\", the frame_id of " +
+          path("camera.yaml")),
+      std::string::npos)
       << words;
 }
 
