@@ -1,4 +1,4 @@
-"""Button frames encoded by canmatrix with the DBC file must be heard as what they say.
+"""Button frames encoded by canmatrix with the DBC file must decode to their values.
 
     dbc_buttons.py READ_KNOWN_BUTTONS GLINT_DBC
 Exit 0: all as encoded; 1: something differs; 77: canmatrix is not installed.
@@ -40,7 +40,7 @@ def main():
         heard = subprocess.run([reader, log, str(message.arbitration_id.id)], text=True,
                                capture_output=True, check=False)
     found = heard.stdout.split("\n")[:-1]
-    print(f"{len(found)} changes heard of {len(expected)} in {FRAMES} frames, exit {heard.returncode}")
+    print(f"{len(found)} changes received of {len(expected)} in {FRAMES} frames, exit {heard.returncode}")
     return 0 if heard.returncode == 0 and found == expected and expected else 1
 
 
