@@ -38,15 +38,15 @@ struct TwoWriters {
 };
 template <class Token, class Reader, bool holds>
 struct WrongPartsCount {
-  static_assert(holds, "these parts are read, but the split that writes them has another count");
+  static_assert(holds, "these parts are read, but their split has another count");
 };
 template <class Token, bool holds>
 struct PreviousOfInput {
-  static_assert(holds, "Previous<> reads what a node wrote; an input is the caller's to remember");
+  static_assert(holds, "Previous<> reads a node's output; the caller stores previous inputs");
 };
 template <class Token, class Node, bool holds>
 struct Cycle {
-  static_assert(holds, "this token waits for itself; feedback goes through Previous<>");
+  static_assert(holds, "this token depends on itself; use Previous<> for feedback");
 };
 
 namespace detail {

@@ -195,7 +195,7 @@ class Graph {
         if (!result) return;
         const auto reason = cell.node.prepare();
         static_assert(std::is_enum_v<std::remove_cv_t<decltype(reason)>>,
-                      "prepare() gives an enumeration whose 0 means ready");
+                      "prepare() returns an enumeration whose 0 means ready");
         if (static_cast<int>(reason) != 0) {
           result = {number, type_name<Node>(), static_cast<int>(reason)};
         }

@@ -34,7 +34,7 @@ inline constexpr bool has_split = [] {
 // Trace receives the nodes of all workers, each node from one of them.
 template <int W, WaitPolicy R, Trace T = NoTrace>
 class Workers {
-  static_assert(W >= 1, "someone has to do the work");
+  static_assert(W >= 1, "at least one worker");
 
  public:
   static constexpr int count = W;

@@ -85,7 +85,7 @@ template <class Body>
     const int code = body();
     // Fails if the output is incomplete, as on a full disk.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    std::fprintf(stderr, "%s: standard output: not all of it could be written\n", program);
+    std::fprintf(stderr, "%s: standard output: written incompletely\n", program);
     return std::max(code, 1);
   } catch (const CLI::ParseError& error) {
     // A request for help is success; any other parse error is bad use, whatever CLI11's code.

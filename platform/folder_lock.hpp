@@ -28,7 +28,7 @@ class FolderLock {
     if (::ftruncate(descriptor_, 0) != 0 || !write_all(descriptor_, text)) {
       const std::string reason = std::generic_category().message(errno);
       ::close(descriptor_);
-      throw InputError(path_ + ": " + reason + "; expected a folder that can be written");
+      throw InputError(path_ + ": " + reason + "; expected a writable folder");
     }
   }
   ~FolderLock() {
@@ -44,7 +44,7 @@ class FolderLock {
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (descriptor_ < 0) {
       throw InputError(path_ + ": " + std::generic_category().message(errno) +
-                       "; expected a folder that can be written");
+                       "; expected a writable folder");
     }
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
@@ -55,8 +55,8 @@ class FolderLock {
         throw InputError(path_ + ": cannot be locked: " + std::generic_category().message(error) +
                          "; expected a file system with locks");
       }
-      throw InputError(folder + ": another run writes there (process " + owner +
-                       "); expected a folder of its own, or the end of that run");
+      throw InputError(folder + ": another run writes to it (process " + owner +
+                       "); expected another folder, or the end of that run");
     }
     struct stat held {
     }, there{};

@@ -80,17 +80,17 @@ CanLoad bus_load(const CanTraffic& traffic, const CanBitRates& rates) noexcept {
 std::optional<std::string> check_bus_load(const CanTraffic& traffic, const CanBitRates& rates) {
   const bool fd = traffic.format == CanFormat::fd;
   if (!(rates.nominal > 0) || (fd && !(rates.data > 0)))
-    return "CAN: a bit rate of 0 or less; expected bits a second, e.g. 1000000";
+    return "CAN: a bit rate of 0 or less; expected bits per second, e.g. 1000000";
   const CanLoad load = bus_load(traffic, rates);
   if (load.fraction <= 1) return {};
   char text[300];
-  std::snprintf(text, sizeof text,
-                "CAN: %d tool%s at %g Hz in %s frames need %.0f %% of the bus (%.1f ms of each "
-                "tick's %.1f ms); expected at most 100 %%: fewer tools, a lower tick_hz, a higher "
-                "bit rate%s",
-                traffic.tools, traffic.tools == 1 ? "" : "s", traffic.tick_hz,
-                fd ? "FD" : "classic", 100 * load.fraction, 1e3 * load.fraction / traffic.tick_hz,
-                1e3 / traffic.tick_hz, fd ? "" : " or FD frames");
+  std::snprintf(
+      text, sizeof text,
+      "CAN: %d tool%s at %g Hz in %s frames need %.0f %% of the bus (%.1f ms of each tick's %.1f "
+      "ms); expected at most 100 %%: use fewer tools, a lower tick_hz, a higher bit rate%s",
+      traffic.tools, traffic.tools == 1 ? "" : "s", traffic.tick_hz, fd ? "FD" : "classic",
+      100 * load.fraction, 1e3 * load.fraction / traffic.tick_hz, 1e3 / traffic.tick_hz,
+      fd ? "" : " or FD frames");
   return text;
 }
 

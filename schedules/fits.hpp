@@ -27,13 +27,12 @@ namespace glint {
 
 template <class Chain, class Node, std::int64_t overshoot_ns, bool holds>
 struct ChainMissesDeadline {
-  static_assert(holds,
-                "on this board the chain may end after its deadline: the deadline passes in this "
-                "node, and the chain's end is late by so many nanoseconds");
+  static_assert(
+      holds, "on this board the chain may miss its deadline in this node, by so many nanoseconds");
 };
 template <class Node, bool holds>
 struct NodeWithoutCost {
-  static_assert(holds, "the board's table has no costs of this node's loops: measure again");
+  static_assert(holds, "the board's table has no costs for this node's loops: measure again");
 };
 
 namespace detail {

@@ -60,7 +60,7 @@ class Checker {
       if (model_.groups[other].resumable || plan_.groups[g].priority < limit) continue;
       add(plan_.groups[g].name + ": priority " + std::to_string(plan_.groups[g].priority) +
           "; expected below " + std::to_string(limit) + ", that of " + plan_.groups[other].name +
-          ": what runs in slices gives way");
+          ": sliced work has the lowest priority");
     }
   }
 
@@ -76,7 +76,7 @@ class Checker {
         continue;
       }
       const auto n = static_cast<std::size_t>(node.node);
-      if (allocation_[n] != nullptr) add(name(g, n) + " stands twice; expected once");
+      if (allocation_[n] != nullptr) add(name(g, n) + " occurs twice; expected once");
       allocation_[n] = &node;
       if (node.core < 0 || node.core >= plan_.cores) {
         add(name(g, n) + ": core " + std::to_string(node.core) + "; expected 0 to " +
@@ -84,7 +84,7 @@ class Checker {
       }
       const std::int64_t allotted_ns = node.end_ns - node.start_ns;
       if (node.start_ns < 0 || allotted_ns < model_.groups[g].nodes[n].bound_ns) {
-        add(name(g, n) + ": is given " + ns(allotted_ns) + "; expected at least its bound, " +
+        add(name(g, n) + ": has " + ns(allotted_ns) + "; expected at least its bound, " +
             ns(model_.groups[g].nodes[n].bound_ns));
       }
     }
@@ -103,8 +103,8 @@ class Checker {
             (from.core == allocation_[n]->core ? 0 : model_.system.inter_core_delay_ns);
         if (allocation_[n]->start_ns >= available_ns) continue;
         add(name(g, n) + ": starts at " + ns(allocation_[n]->start_ns) + "; expected at least " +
-            ns(available_ns) + ", when the data of " +
-            model_.groups[g].nodes[static_cast<std::size_t>(before)].name + " is there");
+            ns(available_ns) + ", when the output of " +
+            model_.groups[g].nodes[static_cast<std::size_t>(before)].name + " is ready");
       }
     }
   }
@@ -129,7 +129,7 @@ class Checker {
       if (allocation_[n]->core == allocation_[0]->core) continue;
       add(name(g, n) + ": core " + std::to_string(allocation_[n]->core) + "; expected " +
           std::to_string(allocation_[0]->core) + ", as " + model_.groups[g].nodes[0].name +
-          ": what runs in slices has one thread");
+          ": sliced work has one thread");
     }
   }
 
@@ -144,7 +144,7 @@ class Checker {
                 double(std::max<std::int64_t>(group.min_gap_ns, 1));
       }
       if (load <= 1) continue;
-      add("core " + std::to_string(core) + ": needed " + std::to_string(int(100 * load)) +
+      add("core " + std::to_string(core) + ": used " + std::to_string(int(100 * load)) +
           " % of the time; expected at most 100 %");
     }
     if (!faults_.empty()) return;

@@ -62,12 +62,12 @@ class BoardReader {
     if (!fits) {
       complain(*root_.get("build"), "build is \"" + board.build + "\"; expected \"" +
                                         expected_.build +
-                                        "\", which made this program (measure again with it)");
+                                        "\", the build of this program (measure again)");
     }
   }
 
   void read_graphs(Board& board) {
-    const toml::table& table = section("graphs", "the signatures of the graphs it was made for");
+    const toml::table& table = section("graphs", "the graph signatures of the measurement");
     TomlReader reader(table, file_, "graphs.");
     kernels_ = expected_.kernels;
     for (const GraphName& graph : expected_.graphs) read_graph(graph, table, reader, board);
@@ -86,13 +86,13 @@ class BoardReader {
     if (found != graph.signature) {
       complain(*table.get(graph.name), "graphs." + graph.name + " is \"" + found +
                                            "\"; expected \"" + graph.signature +
-                                           "\": the graph is another one (measure again)");
+                                           "\": the graph differs (measure again)");
     }
     board.graphs.push_back({graph.name, found});
   }
 
   void read_provenance(Board& board) {
-    const toml::table& table = section("provenance", "where the costs come from");
+    const toml::table& table = section("provenance", "the origin of the costs");
     TomlReader reader(table, file_, "provenance.");
     BoardProvenance& from = board.provenance;
     from.machine = required_text("machine", reader, table, "provenance.");
@@ -204,7 +204,7 @@ Board load_board(const std::string& name_or_path, const BoardExpectation& expect
   if (name_or_path.find_first_of("./") == std::string::npos) {
     std::string names;
     for (const std::string& name : built_in_boards()) names += ", \"" + name + "\"";
-    throw InputError("board \"" + name_or_path + "\" is not known; expected a file" + names);
+    throw InputError("board \"" + name_or_path + "\" is not built in; expected a file" + names);
   }
   return parse_board(read_text(name_or_path), name_or_path, expected, use);
 }

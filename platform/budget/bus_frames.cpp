@@ -68,7 +68,7 @@ class ForeignReader {
     for (const CanMessage& own : own_) {
       if (!same_identifier(own)) continue;
       complain(table, "identifier " + std::to_string(frame.identifier) + " is also that of " +
-                          own.name + "; expected one that this cell does not send");
+                          own.name + "; expected an identifier that this cell does not send");
     }
     for (const CanMessage& other : frames_) {
       if (same_identifier(other)) {
@@ -77,7 +77,7 @@ class ForeignReader {
       }
       if (other.node == frame.node && other.fifo != frame.fifo) {
         complain(table, "queue differs from that of " + other.name +
-                            ", which the same node sends; expected one kind a node");
+                            " of the same node; expected one kind a node");
       }
     }
   }

@@ -38,7 +38,7 @@ void check_scale(const AnalysisInput& analysis_input, const CheckOptions& option
   }
   for (const auto& [kernel, factor] : options.scale) {
     if ((", " + known + ",").find(", " + kernel + ",") != std::string::npos) continue;
-    throw InputError("--scale " + kernel + ": no such node; expected one of " + known);
+    throw InputError("--scale " + kernel + ": unknown node; expected one of " + known);
   }
 }
 
@@ -129,13 +129,13 @@ CheckResult check(const CheckInput& input, const CheckOptions& options) {
   result.bus_load = load_of(result.analysis_input.frames, result.analysis_input.rates);
   for (const auto& [kernel, factor] : options.scale) {
     char text[160];
-    std::snprintf(text, sizeof text, "what if: %.80s takes %g times its bound", kernel.c_str(),
+    std::snprintf(text, sizeof text, "variation: %.80s takes %g times its bound", kernel.c_str(),
                   factor);
     result.what_if.emplace_back(text);
   }
   if (options.clock != 1) {
     char text[80];
-    std::snprintf(text, sizeof text, "what if: the clock runs at %g of what is declared",
+    std::snprintf(text, sizeof text, "variation: the clock runs at %g of the declared frequency",
                   options.clock);
     result.what_if.emplace_back(text);
   }

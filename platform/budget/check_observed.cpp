@@ -20,7 +20,7 @@ void compare(const nlohmann::json& summary, const std::string& summary_file, Che
   }
   if (summary.value("frame_to_can_kind", "observed") != "observed") {
     throw InputError(summary_file +
-                     ":1: frame_to_can_us was computed, no clock saw it; expected the summary of a "
+                     ":1: frame_to_can_us was computed, not measured; expected the summary of a "
                      "run in real time, without --fast");
   }
   const auto judge = [&](const char* what, const nlohmann::json& seen, double bound_us) {

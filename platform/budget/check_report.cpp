@@ -117,8 +117,7 @@ std::string shown(const std::optional<std::int64_t>& ns) {
 std::vector<std::string> invalid_reasons(const CheckInput& input, const CheckResult& result) {
   std::vector<std::string> reasons = result.what_if;
   if (!input.plan.board_sha256.empty() && input.plan.board_sha256 != input.board.sha256) {
-    reasons.push_back("the plan was made from another version of the board file " +
-                      input.plan.board);
+    reasons.push_back("the plan belongs to another version of the board file " + input.plan.board);
   }
   return reasons;
 }
@@ -206,7 +205,7 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
   text += line("\nfits     at most %d tools; %lld searched pixels\n", result.tools_largest,
                result.roi_pixels_largest);
   for (const std::string& fail : result.fails) text += "FAILS    " + fail + "\n";
-  if (result.fails.empty()) text += "holds    every deadline, with the margin asked for\n";
+  if (result.fails.empty()) text += "holds    every deadline, with the required margin\n";
   return text;
 }
 

@@ -129,7 +129,7 @@ class PlanParser {
                        std::to_string(plan_.cores - 1));
     }
     if (lines.count(*n) != 0) {
-      fail(&table, name + " stands here again, first in line " + std::to_string(lines[*n].line) +
+      fail(&table, name + " occurs again, first in line " + std::to_string(lines[*n].line) +
                        "; expected every node once");
     }
     lines[*n] = {line_of(table), start < 0 ? std::nullopt : std::optional(start), bound};
@@ -153,7 +153,7 @@ class PlanParser {
           fail(node_line.line, node_name(bounded.nodes[static_cast<std::size_t>(n)]) +
                                    " starts at " + std::to_string(*node_line.start_ns) +
                                    " ns; expected at least " + std::to_string(earliest) +
-                                   ", after what it waits for");
+                                   ", after its inputs");
         }
         plan_.nodes.push_back({static_cast<int>(g), n, static_cast<int>(core), earliest,
                                earliest + node_line.bound_ns});
@@ -194,7 +194,7 @@ class PlanParser {
       return node_name(model_.groups[g].nodes[static_cast<std::size_t>(n)]);
     };
     fail(line, "a cycle: " + name(stuck) + " waits for " + name(waits_for(stuck)) +
-                   ", which in these orders runs only after it; expected it before");
+                   ", which in these orders runs after it; expected it before");
   }
 
   [[nodiscard]] std::optional<std::size_t> index_of_group(const std::string& name) const {

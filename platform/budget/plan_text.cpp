@@ -23,9 +23,10 @@ long long wide(std::int64_t value) { return value; }
 
 std::string plan_text(const Plan& plan, const TaskModel& model) {
   std::string text =
-      "# Which core runs which node, and in which order: a core runs its nodes in the order of\n"
-      "# these lines. Move a line or change its core and leave out start_ns: it is then computed.\n"
-      "# `glint budget check` says what an edited plan is worth.\n";
+      "# Cores and order of the nodes: a core runs its nodes in the order of these lines. To "
+      "edit,\n"
+      "# move a line or change its core and omit start_ns, which is then computed.\n"
+      "# `glint budget check` checks an edited plan.\n";
   text += "graph = \"" + plan.graph_signature + "\"\n";
   text += "board = \"" + plan.board + "\"\n";
   text += "board_sha256 = \"" + plan.board_sha256 + "\"\n";

@@ -61,7 +61,8 @@ ValidRange range_of(const Section& section, TomlReader& reader, const char* key,
   const std::vector<double> ends = section.required(reader, key, 2);
   if (ends[0] >= 0 && ends[1] > ends[0] && ends[1] <= most) return {ends[0], ends[1]};
   throw_input_error(section.file.path, reader.line_of(key),
-                    section.name + "." + key + " is no range; expected [from, to] within 0 and " +
+                    section.name + "." + key +
+                        " is not a range; expected [from, to] within 0 and " +
                         std::to_string(static_cast<int>(most)));
 }
 
@@ -80,10 +81,10 @@ std::optional<std::array<double, 2>> two_standard_deviations(const NamedFile& fi
   const auto sigma = [&](const char* key) {
     const std::optional<double> found = root[key].value<double>();
     if (!found || !(*found >= 0)) {
-      throw_input_error(file.path, 1,
-                        std::string(key) +
-                            " is missing or no standard deviation; expected a "
-                            "number of 0 or more beside the other one");
+      throw_input_error(
+          file.path, 1,
+          std::string(key) +
+              " is missing or not a standard deviation; expected two numbers of 0 or more");
     }
     return *found;
   };
@@ -144,7 +145,7 @@ CameraModel lens_of(const NamedFile& file, const CameraModel& camera) {
                       "camera has " + std::to_string(lens.width) + " x " +
                           std::to_string(lens.height) + " pixels; expected " +
                           std::to_string(camera.width) + " x " + std::to_string(camera.height) +
-                          ", as the cell's camera.model");
+                          ", the size of the cell's camera.model");
   }
   lens.fx = section.required(reader, "fx_px", 1, 1e6);
   lens.fy = section.required(reader, "fy_px", 1, 1e6);

@@ -77,7 +77,7 @@ void CellParser::read_source(const toml::table* table) {
     for (const char* key : keys) {
       if (!table->contains(key)) continue;
       throw InputError(cell.file + ":" + std::to_string(reader.line_of(key)) + ": source." + key +
-                       ": of a source of kind " + names + "; expected no such key for " +
+                       ": only for kind " + names + "; expected no such key for " +
                        printable(cell.source.kind));
     }
   };
@@ -87,7 +87,7 @@ void CellParser::read_source(const toml::table* table) {
   of_kinds({"dds"}, {"domain", "reliable"});
   if (cell.source.kind == "dds" && table->contains("path")) {
     throw InputError(cell.file + ":" + std::to_string(reader.line_of("path")) +
-                     ": source.path: dds has none; expected its topics");
+                     ": source.path: not used by dds; expected topics");
   }
 }
 
@@ -180,8 +180,8 @@ void read_robot(const toml::table* table, Cell& cell) {
   cell.robot_in_reference = reader.one_of("frame", "world", {"world", "reference"}) == "reference";
   if (cell.robot_in_reference && cell.reference < 0) {
     throw InputError(cell.file + ":" + std::to_string(reader.line_of("frame")) +
-                     ": robot.frame is \"reference\", but no tool is the reference; expected "
-                     "reference = \"NAME\" at the top, a listed tool that does not move");
+                     ": robot.frame is \"reference\" without a reference; expected reference = "
+                     "\"NAME\" at the top, a listed tool at rest");
   }
   reader.done();
 }
@@ -210,7 +210,7 @@ void CellParser::read_tools(TomlReader& root) {
       if (name != cell.tools.items[static_cast<std::size_t>(other)].name.data()) continue;
       throw InputError(cell.file + ": tools " + std::to_string(other + 1) + " and " +
                        std::to_string(t + 1) + " are both named \"" + name +
-                       "\"; expected a name of its own for each");
+                       "\"; expected different names");
     }
   }
   cell.warnings = tool_warnings(cell.tools, cell.tool_files,

@@ -122,7 +122,7 @@ void read_sensor(TomlReader& reader, Cell& cell) {
   if (const auto range_mm = reader.reals("range_mm", 2)) {
     if (!((*range_mm)[0] > 0) || !((*range_mm)[1] > (*range_mm)[0]) || (*range_mm)[1] > 20'000) {
       throw_input_error(cell, reader.line_of("range_mm"),
-                        ".range_mm: no range; expected [from, to] within 0 and 20000");
+                        ".range_mm: not a range; expected [from, to] within 0 and 20000");
     }
     camera.range_min_m = 1e-3 * (*range_mm)[0];
     camera.range_max_m = 1e-3 * (*range_mm)[1];
@@ -141,10 +141,8 @@ void read_sensor(TomlReader& reader, Cell& cell) {
                           std::to_string(top) + " for 8 bits");
   }
   if (camera.threshold == 0) {
-    throw_input_error(
-        cell, reader.line_of("model"),
-        ".threshold: none; expected the brightness above which a pixel of this camera is a "
-        "marker's");
+    throw_input_error(cell, reader.line_of("model"),
+                      ".threshold: missing; expected the least brightness of a marker's pixels");
   }
 }
 
@@ -173,7 +171,7 @@ void read_camera(const toml::table* table, Cell& cell, const CellFileReader& fil
   read_size(reader, cell.camera);
   if (cell.camera.model.width == 0 || cell.camera.model.height == 0) {
     throw_input_error(cell, reader.line_of("model"),
-                      ": no width and height; expected both for " + model);
+                      ": width and height are missing; expected both for " + model);
   }
   read_sensor(reader, cell);
   cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
@@ -181,7 +179,7 @@ void read_camera(const toml::table* table, Cell& cell, const CellFileReader& fil
   const std::string lens = reader.text("file", "");
   if (!lens.empty() && !cell.ray_table.empty()) {
     throw_input_error(cell, reader.line_of("file"),
-                      ".file beside camera.ray_table; expected one lens, not two");
+                      ".file and camera.ray_table are both set; expected one lens");
   }
   if (!lens.empty() || files.is_recorded(k_lens_key)) {
     const std::string name = lens.empty() ? std::string(k_lens_key) + ".toml" : lens;
@@ -232,8 +230,7 @@ void set_lens(Cell& cell, SourceLens lens) {
 void require_lens(const Cell& cell) {
   if (has_lens(cell.camera)) return;
   throw InputError(cell.file + ": camera: " + cell.camera.name +
-                   " has no lens of its own; expected camera.file, camera.ray_table, or a source "
-                   "that has one");
+                   " has no lens; expected camera.file, camera.ray_table, or a source with a lens");
 }
 
 }  // namespace glint

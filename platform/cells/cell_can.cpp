@@ -67,8 +67,8 @@ void read_buttons(TomlReader& reader, Cell& cell) {
     std::string expected = tool_range(cell);
     for (const std::uint32_t other : of_node) expected += ", " + hexadecimal(other);
     refuse(reader, cell, "buttons",
-           " is " + hexadecimal(identifier) + ", with which Glint sends; expected none of " +
-               expected);
+           " is " + hexadecimal(identifier) +
+               ", an identifier that Glint sends; expected none of " + expected);
   }
   cell.can.buttons = identifier;
 }

@@ -20,9 +20,9 @@ void read_mapping(const toml::table& table, const ResolvedPath& path, Cell& cell
   MappingSettings& mapping = cell.mapping.emplace();
   mapping.source = path(reader.text("source", ""), "mapping.source");
   if (mapping.source.empty()) {
-    throw InputError(cell.file + ":" + std::to_string(table.source().begin.line) +
-                     ": [mapping] without a source; expected source = \"FOLDER\", of depth "
-                     "pictures with poses");
+    throw InputError(
+        cell.file + ":" + std::to_string(table.source().begin.line) +
+        ": [mapping] has no source; expected source = \"FOLDER\" of depth images with poses");
   }
   const auto number = [&](const char* key, int otherwise, int low, int high) {
     return static_cast<int>(reader.integer(key, otherwise, low, high));
@@ -52,9 +52,9 @@ void read_background(const toml::table* background, const toml::table* mapping,
 void check_tracked_robot(const toml::table* mapping, const Cell& cell) {
   if (!cell.mapping || cell.mapping->model.empty()) return;
   if (cell.robot_valid && !cell.robot_in_reference) return;
-  throw InputError(cell.file + ":" + std::to_string(mapping->source().begin.line) +
-                   ": mapping.model is followed from where [robot] says; expected a [robot] with "
-                   "frame = \"world\"");
+  throw InputError(
+      cell.file + ":" + std::to_string(mapping->source().begin.line) +
+      ": mapping.model starts from the pose in [robot]; expected a [robot] with frame = \"world\"");
 }
 
 }  // namespace glint

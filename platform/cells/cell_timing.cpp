@@ -89,7 +89,7 @@ void read_budget(const toml::table* table, Cell& cell) {
   require("tools", budget.tools, listed, std::to_string(listed) + " tools are listed");
   const int markers = markers_of(cell.tools);
   require("blobs", budget.blobs, markers,
-          "the listed tools have " + std::to_string(markers) + " markers, each a blob");
+          "the listed tools have " + std::to_string(markers) + " markers, one blob each");
 }
 
 }  // namespace glint

@@ -19,8 +19,8 @@ DepthBias depth_bias_of(const toml::table& table, const std::string& file,
   if (!range_mm || !((*range_mm)[0] >= 0 && (*range_mm)[1] > (*range_mm)[0])) {
     const auto line = range_mm ? reader.line_of("range_mm") : table.source().begin.line;
     throw InputError(file + ":" + std::to_string(line) + ": " + section + "range_mm is " +
-                     (range_mm ? "no range" : "missing") +
-                     "; expected [from, to], the ranges it was measured at");
+                     (range_mm ? "not a range" : "missing") +
+                     "; expected [from, to], the measured ranges");
   }
   bias.range_min_m = 1e-3 * (*range_mm)[0];
   bias.range_max_m = 1e-3 * (*range_mm)[1];

@@ -51,7 +51,7 @@ void check_key_parts(std::string_view text, const std::string& file) {
       const auto line =
           1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
       throw InputError(file + ":" + std::to_string(line) + ": a key of more than " +
-                       std::to_string(k_toml_key_parts_max) + " parts; expected a.b.c of a few");
+                       std::to_string(k_toml_key_parts_max) + " parts; expected a shorter key");
     }
     ++i;
   }

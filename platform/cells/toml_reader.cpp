@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr const char* k_text_expected = "a text in quotes, of printable UTF-8";
+constexpr const char* k_text_expected = "text in quotes, printable UTF-8";
 
 std::string place(const std::string& file, const toml::source_region& region) {
   return file + ":" + std::to_string(region.begin.line);
@@ -61,7 +61,7 @@ std::size_t line_that_breaks(const std::string& text) {
 }  // namespace
 
 std::string read_text(const std::string& file) {
-  return read_file(file, k_text_bytes_max, "a TOML file there");
+  return read_file(file, k_text_bytes_max, "a TOML file");
 }
 
 void throw_toml_assertion() { throw BrokenState(); }
@@ -75,7 +75,7 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
                      "; expected TOML");
   } catch (const BrokenState&) {
     throw InputError(file + ":" + std::to_string(line_that_breaks(text)) +
-                     ": text that the parser cannot read; expected TOML");
+                     ": invalid text; expected TOML");
   }
 }
 

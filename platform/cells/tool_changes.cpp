@@ -56,17 +56,16 @@ void read_tool_changes(TomlReader& root, Cell& cell) {
     const std::string added = reader.text("add", ""), removed = reader.text("remove", "");
     reader.done();
     if (at <= before)
-      throw InputError(place +
-                       ": at_s is not later than the one before; expected times that rise from 0 "
-                       "on");
+      throw InputError(
+          place + ": at_s is not later than the previous one; expected increasing times from 0 on");
     if (added.empty() && removed.empty())
       throw InputError(place + " changes nothing; expected add = \"NAME\" or remove = \"NAME\"");
     const ToolsPresent more = added.empty() ? 0 : bit_of(added, cell, place);
     const ToolsPresent less = removed.empty() ? 0 : bit_of(removed, cell, place);
     if ((there & more) != 0 || (there & less) != less)
       throw InputError(place + ": \"" + ((there & more) != 0 ? added : removed) + "\" is " +
-                       ((there & more) != 0 ? "there already" : "not there") +
-                       "; expected a change of what is there at that time");
+                       ((there & more) != 0 ? "already present" : "absent") +
+                       "; expected a change at that time");
     there = static_cast<ToolsPresent>((there | more) & ~less);
     cell.tool_changes.push_back({at, there});
     before = at;

@@ -18,7 +18,7 @@ Tool load_tool(const std::string& path) {
                      "\"; expected a tool file ending in .toml, .rom or .ini");
   }
   if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(path + ": is no file; expected a tool file (.toml, .rom or .ini)");
+    throw InputError(path + ": is not a file; expected a tool file (.toml, .rom or .ini)");
   }
   const std::string content = read_text(path);
   if (ending == ".rom") return tool_from_rom_bytes(content, path);
@@ -46,8 +46,7 @@ std::string stem_of(const std::string& path) { return std::filesystem::path(path
 void set_name(Tool& tool, const std::string& name, const std::string& place) {
   if (printable(name) != name) {
     throw InputError(place + ": name \"" + name +
-                     "\" has characters that no screen shows; expected "
-                     "printable UTF-8");
+                     "\" has unprintable characters; expected printable UTF-8");
   }
   if (name.empty() || name.size() >= tool.name.size()) {
     throw InputError(place + ": name \"" + name + "\" has " + std::to_string(name.size()) +
@@ -68,12 +67,11 @@ Tool prepared(Tool tool, const std::string& place) {
     case Reason::none:
       return tool;
     case Reason::collinear:
-      throw InputError(place + ": all markers lie on one line; expected at least one beside it");
+      throw InputError(place + ": the markers are collinear; expected at least one off the line");
     case Reason::degenerate:
-      throw InputError(place +
-                       ": two markers lie in one place; expected at least 1 mm between any two");
+      throw InputError(place + ": two markers coincide; expected at least 1 mm between any two");
     default:
-      throw InputError(place + ": the markers fix no pose; expected 3 to 8 distinct points");
+      throw InputError(place + ": the markers determine no pose; expected 3 to 8 distinct points");
   }
 }
 

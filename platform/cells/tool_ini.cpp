@@ -55,7 +55,7 @@ Entries entries_of(std::string_view text, const std::string& path) {
     }
     const std::string key = section + "/" + lowered(trimmed(row.substr(0, equals)));
     if (!entries.emplace(key, Entry{std::string(trimmed(row.substr(equals + 1))), line}).second) {
-      throw InputError(place_of(path, line) + ": " + key + " stands twice; expected it once");
+      throw InputError(place_of(path, line) + ": " + key + " occurs twice; expected it once");
     }
   }
   return entries;
@@ -116,7 +116,7 @@ Tool tool_from_ini_text(std::string_view text, const std::string& path) {
   if (has_section(entries, "fiducial" + std::to_string(count))) {
     throw InputError(place_of(path, stated.line) + ": count is " + std::to_string(count) +
                      " but [fiducial" + std::to_string(count) +
-                     "] follows; expected as many fiducials as counted");
+                     "] follows; expected as many fiducials as count");
   }
   tool.marker_count = count;
   tool.marker_radius_m = 1e-3 * k_passive_sphere_radius_mm;

@@ -63,16 +63,16 @@ struct WarningWriter {
       from.push_back(static_cast<int>(i));
       to.push_back(name);
     }
-    if (own) return "its markers " + listed(from) + " may be taken for its own " + listed(to);
-    return "markers " + listed(from) + " of the first lie as " + listed(to) + " of the second";
+    if (own) return "its markers " + listed(from) + " may be mistaken for its own " + listed(to);
+    return "markers " + listed(from) + " of the first match " + listed(to) + " of the second";
   }
 
   std::string consequence(const WrongLabeling& labeling) const {
     const std::string share = number("%.2g", 100 * error_probability(labeling.distance_sigmas));
-    return sigmas(labeling.distance_sigmas) + " sigma away at " +
-           number("%.1f", 1e3 * settings.sigma_m) + " mm of range noise, so that in up to " +
-           share + " % of frames the wrong one fits better" +
-           (labeling.steps_exhausted ? " (not all labelings were tried)" : "");
+    return sigmas(labeling.distance_sigmas) + " sigma apart at " +
+           number("%.1f", 1e3 * settings.sigma_m) + " mm of range noise: in up to " + share +
+           " % of frames the wrong one fits better" +
+           (labeling.steps_exhausted ? " (not all labelings were compared)" : "");
   }
 
   std::string next_step(const WrongLabeling& labeling) const {
@@ -85,9 +85,9 @@ struct WarningWriter {
 
   std::string warning(const WrongLabeling& labeling) const {
     if (labeling.markers == 0) {
-      return subject(labeling) + ": not all labelings were tried in " +
-             std::to_string(settings.steps_max) + " steps; not known to be told apart by " +
-             sigmas(settings.limit_sigmas) + " sigma; expected tools less alike";
+      return subject(labeling) + ": not all labelings were compared in " +
+             std::to_string(settings.steps_max) + " steps; separation is not proved to be " +
+             sigmas(settings.limit_sigmas) + " sigma; expected tools with more different geometry";
     }
     const bool refused = labeling.distance_sigmas <= k_refused_sigmas;
     return subject(labeling) + ": " + labeling_text(labeling) + ", " + consequence(labeling) +

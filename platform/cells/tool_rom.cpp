@@ -31,7 +31,7 @@ std::string at(const std::string& path, std::size_t byte) {
 Tool tool_from_rom_bytes(std::string_view bytes, const std::string& path) {
   if (bytes.size() < k_markers_at || bytes.substr(0, 3) != "NDI") {
     throw InputError(at(path, 0) +
-                     ": is no NDI tool definition; expected the letters NDI and at least " +
+                     ": is not an NDI tool definition; expected the letters NDI and at least " +
                      std::to_string(k_markers_at) + " bytes");
   }
   std::uint32_t sum = 0;
@@ -41,7 +41,7 @@ Tool tool_from_rom_bytes(std::string_view bytes, const std::string& path) {
   const std::uint32_t stated = little_endian(bytes, k_sum_at, 2);
   if (sum != stated) {
     throw InputError(at(path, k_sum_at) + ": checksum " + std::to_string(stated) +
-                     " but the bytes add up to " + std::to_string(sum) +
+                     " but the sum of the bytes is " + std::to_string(sum) +
                      "; expected an unchanged, complete file");
   }
   const std::uint32_t count = little_endian(bytes, k_count_at, 1);

@@ -62,7 +62,7 @@ const toml::node& required(const toml::table& table, const char* key, const std:
 std::string text_at(const toml::node& node, const char* key, const std::string& path) {
   const auto text = node.value_exact<std::string>();
   if (!text) {
-    throw InputError(place_of(path, node) + ": " + key + " is not text; expected it in quotes");
+    throw InputError(place_of(path, node) + ": " + key + " is not text; expected text in quotes");
   }
   return *text;
 }
@@ -96,8 +96,8 @@ DepthBias bias_in(const toml::table& table, const std::string& path) {
   if (node == nullptr) return {};
   if (node->as_table() == nullptr) {
     throw InputError(place_of(path, *node) +
-                     ": depth_bias is no table; expected [depth_bias], as in a file of "
-                     "`glint calibrate depth`");
+                     ": depth_bias is not a table; expected [depth_bias], as in a file of `glint "
+                     "calibrate depth`");
   }
   return depth_bias_of(*node->as_table(), path, "depth_bias.");
 }
@@ -115,7 +115,7 @@ Tool tool_from_toml_text(std::string_view text, const std::string& path) {
   const toml::array* points = markers.as_array();
   if (points == nullptr) {
     throw InputError(place_of(path, markers) +
-                     ": markers_mm is no list; expected 3 to 8 points [x, y, z]");
+                     ": markers_mm is not a list; expected 3 to 8 points [x, y, z]");
   }
   check_marker_count(static_cast<long long>(points->size()), place_of(path, markers));
   for (std::size_t i = 0; i < points->size(); ++i) {

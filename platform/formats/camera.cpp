@@ -194,7 +194,7 @@ std::vector<float> rays_of_npy(const std::string& path, const CameraModel& model
   for (const std::size_t n : array.shape) found += (found.empty() ? "" : " x ") + std::to_string(n);
   throw InputError(path + ":shape: " + found + "; expected " + std::to_string(flat[0]) +
                    " x 3 or " + std::to_string(height) + " x " + std::to_string(width) +
-                   " x 3, a ray for each pixel of " + name);
+                   " x 3, one ray for each pixel of " + name);
 }
 
 // Selects the format by content (NumPy magic) or by size.
@@ -208,11 +208,11 @@ std::vector<float> rays_of_file(const std::string& path, const CameraModel& mode
       hl2ss_calibration_bytes(model, false) == bytes.size()) {
     return rays_of_planes(floats_of(bytes), pixels);
   }
-  throw InputError(path + ": " + std::to_string(bytes.size()) + " bytes; expected a .npy file, " +
-                   std::to_string(3 * pixels * sizeof(float)) +
-                   " bytes of unit rays (StreamRecorder's _lut.bin), or hl2ss's calibration, each "
-                   "for the " +
-                   std::to_string(pixels) + " pixels of " + name);
+  throw InputError(
+      path + ": " + std::to_string(bytes.size()) + " bytes; expected a .npy file, " +
+      std::to_string(3 * pixels * sizeof(float)) +
+      " bytes of unit rays (StreamRecorder's _lut.bin), or hl2ss's calibration, each for the " +
+      std::to_string(pixels) + " pixels of " + name);
 }
 
 // Initial guess for the search in a ray table: pinhole at the ray nearest to the optical axis.
@@ -253,8 +253,8 @@ Camera with_rays(Camera camera, std::vector<float> rays, const std::string& path
     }
     if (!(std::abs(square - 1) < 1e-3f) || !(ray[2] > 0)) {
       throw InputError(path + ":row " + std::to_string(i) +
-                       ": not a unit vector ahead of the camera; expected unit rays, or zeros "
-                       "where the lens maps nothing");
+                       ": not a unit vector with z above 0; expected unit rays, or zeros where the "
+                       "lens maps nothing");
     }
     ++valid;
   }

@@ -63,7 +63,7 @@ NpyFile read_npy(const std::string& path) {
   out.data_at = 8 + length_bytes + header_length;
   if (out.data_at > bytes.size()) {
     throw InputError(path + ":byte 8: header of " + std::to_string(header_length) +
-                     " bytes is longer than the file; expected a whole .npy file");
+                     " bytes is longer than the file; expected a complete .npy file");
   }
   const std::string header = bytes.substr(8 + length_bytes, header_length);
   const std::string descr = value_after(header, "descr");

@@ -58,12 +58,12 @@ void check_image_size(const std::string& path, std::size_t place, std::uint64_t 
 }
 
 Image read_pgm(const std::string& path, const PgmLimits& limits) {
-  return pgm_of(read_file(path, k_pgm_bytes_max, "a binary PGM picture"), path, limits);
+  return pgm_of(read_file(path, k_pgm_bytes_max, "a binary PGM image"), path, limits);
 }
 
 Image pgm_of(std::string_view bytes, const std::string& path, const PgmLimits& limits) {
   if (bytes.compare(0, 2, "P5") != 0) {
-    throw InputError(path + ":byte 0: does not begin with P5; expected a binary PGM picture");
+    throw InputError(path + ":byte 0: does not begin with P5; expected a binary PGM image");
   }
   Reader reader{path, bytes};
   Image out;

@@ -63,7 +63,7 @@ Image png_of(std::string_view file, const std::string& path, const std::string& 
   const auto fail = [&](const std::string& found) {
     throw InputError(path + ": " + found + "; expected " + expected);
   };
-  if (file.size() < k_height_at + 4 || !file.starts_with(k_signature)) fail("no picture");
+  if (file.size() < k_height_at + 4 || !file.starts_with(k_signature)) fail("not an image");
   check_image_size(path, k_width_at, big_endian(file.data() + k_width_at),
                    big_endian(file.data() + k_height_at));
 
@@ -76,7 +76,7 @@ Image png_of(std::string_view file, const std::string& path, const std::string& 
   const int format = format_of(header);
   const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE;
   if (error == 0) error = spng_decoded_image_size(context.get(), format, &size);
-  if (error != 0) fail(std::string("no picture: ") + spng_strerror(error));
+  if (error != 0) fail(std::string("invalid image: ") + spng_strerror(error));
   // Decoding allocates memory for every pixel: refuse a short file that declares many pixels.
   if (std::uint64_t{header.width} * header.height * header.bit_depth / 8 >
       k_deflate_ratio_max * file.size()) {
@@ -85,7 +85,7 @@ Image png_of(std::string_view file, const std::string& path, const std::string& 
   }
   std::vector<std::uint8_t> bytes(size);
   error = spng_decode_image(context.get(), bytes.data(), bytes.size(), format, 0);
-  if (error != 0) fail(std::string("no whole picture: ") + spng_strerror(error));
+  if (error != 0) fail(std::string("incomplete image: ") + spng_strerror(error));
   Image picture{static_cast<int>(header.width),
                 static_cast<int>(header.height),
                 grey           ? 1
@@ -98,7 +98,7 @@ Image png_of(std::string_view file, const std::string& path, const std::string& 
 }
 
 Image read_image_file(const std::string& path) {
-  const std::string expected = "a PNG or PGM picture";
+  const std::string expected = "a PNG or PGM image";
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be read; expected " + expected);
   const int first = file.get();
@@ -122,7 +122,7 @@ void write_png(const std::string& path, int width, int height, int channels,
   int error = spng_encode_image(context.get(), values, size, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
   const std::unique_ptr<void, void (*)(void*)> png(
       error == 0 ? spng_get_png_buffer(context.get(), &length, &error) : nullptr, std::free);
-  if (error != 0) throw InputError(path + ": no picture: " + spng_strerror(error));
+  if (error != 0) throw InputError(path + ": cannot be encoded: " + spng_strerror(error));
   const std::string reason =
       write_file_atomically(path, std::string_view(static_cast<const char*>(png.get()), length));
   if (!reason.empty()) {

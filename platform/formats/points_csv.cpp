@@ -61,13 +61,13 @@ Row row_of(std::string_view line, const std::string& place) {
 
 void append(std::vector<PointFrame>& frames, const Row& row, const std::string& place) {
   if (!frames.empty() && row.time < frames.back().time) {
-    throw InputError(place + ": time_s runs backwards; expected rows in order of time");
+    throw InputError(place + ": time_s decreases; expected rows in order of time");
   }
   if (frames.empty() || frames.back().time != row.time) frames.push_back({row.time, {}});
   std::vector<Vector3>& points = frames.back().points_m;
   if (points.size() == static_cast<std::size_t>(k_blobs_max)) {
     throw InputError(place + ": more than " + std::to_string(k_blobs_max) +
-                     " points of one time; expected at most so many");
+                     " points at one time; expected at most so many");
   }
   points.push_back(row.point_m);
 }

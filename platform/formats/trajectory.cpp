@@ -44,7 +44,7 @@ class Line {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
       fail("column " + std::to_string(column_) + " holds '" + std::string(text.substr(0, 40)) +
-           "', no finite number");
+           "', not a finite number");
     }
     return value;
   }
@@ -62,7 +62,8 @@ class Line {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() ||
         value > 4'000'000'000'000'000'000 || value < -4'000'000'000'000'000'000) {
-      fail("column 1 holds '" + std::string(text.substr(0, 40)) + "', no whole nanoseconds");
+      fail("column 1 holds '" + std::string(text.substr(0, 40)) +
+           "', not a whole number of nanoseconds");
     }
     return value;
   }
@@ -86,7 +87,7 @@ TimedPose parse(std::string_view text, const std::string& where, bool commas) {
   for (double& value : q) value = line.number();
   const Quaternion rotation =
       commas ? Quaternion(q[0], q[1], q[2], q[3]) : Quaternion(q[3], q[0], q[1], q[2]);
-  if (!(std::abs(rotation.norm() - 1) < 0.01)) line.fail("a quaternion that is not of length 1");
+  if (!(std::abs(rotation.norm() - 1) < 0.01)) line.fail("a quaternion of a length other than 1");
   sample.pose.rotation = rotation.normalized();
   return sample;
 }
@@ -130,7 +131,8 @@ Trajectory trajectory_from_text(const std::string& text, const std::string& name
     if (trajectory.samples.empty()) trajectory.begin = sample.time;
     sample.time.nanoseconds -= trajectory.begin.nanoseconds;
     if (!trajectory.samples.empty() && sample.time <= trajectory.samples.back().time) {
-      throw InputError(where + ": its stamp is not after the one before; expected rising stamps");
+      throw InputError(where +
+                       ": its stamp is not after the previous one; expected increasing stamps");
     }
     trajectory.samples.push_back(sample);
   }

@@ -63,10 +63,10 @@ int run_cases(const CaseExperiment& experiment, const ExperimentArguments& argum
 CLI::App& add_one(CLI::App& command, const std::string& name, const char* what,
                   const Arguments& arguments) {
   CLI::App* sub = command.add_subcommand(name, what);
-  sub->add_flag("--quick", arguments->quick, "few samples: to see that it works");
-  sub->add_option("--random-seed,--seed", arguments->seed, "of the random numbers")
+  sub->add_flag("--quick", arguments->quick, "few samples, as a short test");
+  sub->add_option("--random-seed,--seed", arguments->seed, "start of the random numbers")
       ->capture_default_str();
-  sub->add_option("--json", arguments->json, "write the figures here");
+  sub->add_option("--json", arguments->json, "file of the figures");
   sub->add_option("--out", arguments->out, "folder of the plots")->capture_default_str();
   sub->footer("Example: glint experiment " + name + " --json " + name + ".json");
   return *sub;
@@ -83,11 +83,12 @@ void add_published(CLI::App& command, const char* name, const char* what, Experi
 
 void add_experiment(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "experiment", "How good the estimates are, beside the published method and other rivals");
+      "experiment",
+      "Run an experiment: errors of the estimates, beside the published method and others");
   command->require_subcommand(1);
   command->footer(
       "Example: glint experiment static --json static.json\n"
-      "Exit: 0 every bar is met (or the experiment has none), 1 one is missed, 2 bad use.");
+      "Exit: 0 all bars met (or none defined), 1 a bar missed, 2 bad use.");
   auto arguments = std::make_shared<ExperimentArguments>();
   add_published(*command, "static", "headset and pen still, an arm's length apart",
                 ExperimentKind::still, arguments, exit_code);
@@ -105,8 +106,8 @@ void add_experiment(CLI::App& app, int& exit_code) {
     }
     if (experiment.accepts_tries) {
       sub.add_option("--tries", arguments->tries,
-                     "tries in all classes together (of field: devices), in place of the other "
-                     "cases; finished ones are in --out and not run again")
+                     "total tries of all classes (field: devices) instead of the other cases; "
+                     "--out stores finished tries")
           ->check(in_range(1, 1'000'000));
     }
     sub.callback(

@@ -9,7 +9,7 @@
 #include "platform/lab/command_experiment.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Glint's lab: experiments, and the published method in place of the tracker"};
+  CLI::App app{"Glint's lab: experiments, and the published method instead of the tracker"};
   app.require_subcommand(1);
   app.set_version_flag("--version", glint::version_text(), "version and commit");
   app.footer("Example: glint experiment static --json static.json");

@@ -51,8 +51,8 @@ std::string checked_topic(const SourceSettings& source, const char* key, const s
   std::string name = dds_topic(topic);
   if (!topic.empty() && !name.empty()) return name;
   throw InputError(source.position + "." + key + ": " +
-                   (topic.empty() ? "none named" : "\"" + printable(topic) + "\"") +
-                   "; expected a topic's name, as /tof/image");
+                   (topic.empty() ? "missing" : "\"" + printable(topic) + "\"") +
+                   "; expected a topic's name, e.g. /tof/image");
 }
 
 SourceLens lens_from(Participant& participant, const std::string& topic, LiveSettings live) {
@@ -206,7 +206,7 @@ SourceReport DdsSource::report() {
   SourceReport report;
   report.text = "dds domain " + std::to_string(domain_) + ": " +
                 printable(source_.reflectivity_topic) + " and " + printable(source_.depth_topic) +
-                (frames_.publishers() == 0 ? ": no image came" : "");
+                (frames_.publishers() == 0 ? ": no image received" : "");
   frames_.add_to(report);
   std::uint64_t lost = 0, overwritten = 0, incompatible = 0;
   for (const Input& input : inputs_) {
@@ -218,18 +218,17 @@ SourceReport DdsSource::report() {
     dds_get_requested_incompatible_qos_status(input.reader, &refused);
     if (refused.total_count == 0) continue;
     incompatible += refused.total_count;
-    report.failures.push_back(input.topic +
-                              ": a publisher that repeats nothing; expected a reliable one, or "
-                              "source.reliable = false");
+    report.failures.push_back(
+        input.topic +
+        ": a best-effort publisher; expected a reliable one, or source.reliable = false");
   }
   report.counts.insert(report.counts.end(), {{"messages_lost", lost},
                                              {"messages_overwritten", overwritten},
                                              {"publishers_incompatible", incompatible}});
   add_to(report);
-  if (lost > 0) report.failures.push_back(std::to_string(lost) + " messages lost on their way");
+  if (lost > 0) report.failures.push_back(std::to_string(lost) + " messages lost in transport");
   if (overwritten > 0) {
-    report.failures.push_back(std::to_string(overwritten) +
-                              " messages overwritten: the machine was too busy to take them");
+    report.failures.push_back(std::to_string(overwritten) + " messages overwritten: read too late");
   }
   return report;
 }

@@ -108,7 +108,7 @@ std::string FileSource::camera_mismatch(const FrameBuffer& pixels) const {
       camera_.reflectivity_bits == 8 ? pixels.reflectivity_8.size() : pixels.reflectivity_16.size();
   if (bright != count) {
     const bool none = pixels.reflectivity_8.empty() && pixels.reflectivity_16.empty();
-    return (none ? "no reflectivity" : "reflectivity of another number of bits") + expected;
+    return (none ? "no reflectivity" : "reflectivity with another number of bits") + expected;
   }
   if (pixels.depth.size() != count) return "no depth" + expected;
   return {};
@@ -190,13 +190,13 @@ SourceReport FileSource::report() {
   }
   if (camera_mismatches_ > 0) {
     report.failures.push_back(std::to_string(camera_mismatches_) +
-                              " frames are not this camera's; the first has " +
+                              " frames do not match the camera; the first has " +
                               first_camera_mismatch_);
   }
   if (const std::string missing = reader_->missing(); !missing.empty()) {
     report.failures.push_back(missing);
   }
-  if (!ended_by_.empty()) report.failures.push_back("reading ended early: " + ended_by_);
+  if (!ended_by_.empty()) report.failures.push_back("reading stopped early: " + ended_by_);
   return report;
 }
 

@@ -66,7 +66,7 @@ PixelPlane read_array(const std::string& path, double metres) {
   const NpyNumbers array = read_npy_numbers(path);
   if (array.shape.size() != 2 || array.shape[0] > k_image_side_max ||
       array.shape[1] > k_image_side_max) {
-    throw InputError(path + ":shape: not a picture; expected rows x columns");
+    throw InputError(path + ":shape: not an image; expected rows x columns");
   }
   PixelPlane plane{static_cast<int>(array.shape[1]), static_cast<int>(array.shape[0]), {}, path};
   plane.values.reserve(array.values.size());
@@ -81,7 +81,7 @@ PixelPlane read_plane(const std::string& path, double metres) {
   if (ends_with(path, ".npy")) return read_array(path, metres);
   Image picture = read_image_file(path);
   if (picture.channels != 1) {
-    throw InputError(path + ": a picture in colour; expected grey, 8 or 16 bits");
+    throw InputError(path + ": a colour image; expected grey, 8 or 16 bits");
   }
   return {picture.width, picture.height, std::move(picture.values), path};
 }
@@ -107,8 +107,8 @@ void FolderFrames::read_heading(std::string_view line) {
     if (known == k_names.end() || found[column]) {
       throw InputError(place + "column \"" + printable(std::string(field.substr(0, 40))) + "\"" +
                        (known == k_names.end() ? "" : " twice") +
-                       "; expected time_ns,reflectivity,depth and, if there are any, arrival_ns, "
-                       "sequence, x_m,y_m,z_m,qx,qy,qz,qw");
+                       "; expected time_ns,reflectivity,depth and optionally arrival_ns, sequence, "
+                       "x_m,y_m,z_m,qx,qy,qz,qw");
     }
     found[column] = true;
     column_.push_back(static_cast<int>(column));
@@ -117,7 +117,7 @@ void FolderFrames::read_heading(std::string_view line) {
     const bool pose = i >= k_pose;
     if (found[i] == (pose ? found[k_pose] : i < k_required_columns || found[i])) continue;
     throw InputError(place + "no column " + std::string(k_names[i]) + "; expected " +
-                     (pose ? "all seven of a pose, or none" : "it beside the others"));
+                     (pose ? "all seven columns of a pose, or none" : "this column too"));
   }
 }
 

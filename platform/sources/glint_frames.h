@@ -95,6 +95,6 @@ static inline int glint_frames_send(struct glint_frames* f, int64_t stamp_ns, co
   if (pose != NULL) memcpy(frame.pose, pose, sizeof frame.pose);
   __atomic_add_fetch((uint64_t*)(void*)(f->memory + f->slot * f->slot_bytes), 1, __ATOMIC_SEQ_CST);
   f->busy |= 1u << f->slot;
-  return send(f->socket_fd, &frame, sizeof frame, MSG_NOSIGNAL) == (ssize_t)sizeof frame ? 0 : glint_frames_fail(f, "Glint has gone");
+  return send(f->socket_fd, &frame, sizeof frame, MSG_NOSIGNAL) == (ssize_t)sizeof frame ? 0 : glint_frames_fail(f, "Glint closed the connection");
 }
 #endif

@@ -77,7 +77,7 @@ void Hl2ssFrames::read_beginning() {
     file_.refuse(begin + 2,
                  "profiles " + std::to_string(bytes[2]) + " and " + std::to_string(bytes[3]) +
                      ": compressed frames",
-                 "0 and 255: raw ones, whose depth is not quantised");
+                 "0 and 255: raw frames with unquantised depth");
   }
   at_ += std::uint64_t{bytes[9]} * 16;
 }
@@ -90,14 +90,14 @@ void Hl2ssFrames::read_calibration() {
                              static_cast<std::size_t>(camera_.model.height);
   if (bytes.size() != expected) {
     throw InputError(source_.calibration + ": " + std::to_string(bytes.size()) +
-                     " bytes; expected " + std::to_string(expected) + ", as hl2ss sends them for " +
+                     " bytes; expected " + std::to_string(expected) + ", the size for " +
                      camera_.name);
   }
   const auto* extrinsics = reinterpret_cast<const std::uint8_t*>(bytes.data()) + 8 * pixels;
   const std::optional<Pose> T_camera_rig = pose_of_matrix(matrix_at(extrinsics));
   if (!T_camera_rig) {
     throw InputError(source_.calibration + ":byte " + std::to_string(8 * pixels) +
-                     ": no rigid transform; expected rig to camera, for row vectors");
+                     ": not a rigid transform; expected rig to camera, for row vectors");
   }
   T_rig_camera_ = T_camera_rig->inverse();
 }
@@ -122,8 +122,8 @@ bool Hl2ssFrames::next(ReadFrame& frame) {
       whole += payload + pose;
     }
     if (left < whole || payload > k_packet_bytes_max) {
-      missing_ = file_.path() + ":byte " + std::to_string(begin) +
-                 ": a packet that is cut short; " + std::to_string(left) + " bytes are not read";
+      missing_ = file_.path() + ":byte " + std::to_string(begin) + ": a truncated packet; " +
+                 std::to_string(left) + " bytes not read";
       at_ = file_.size();
       return false;
     }
@@ -172,13 +172,13 @@ void Hl2ssFrames::read_packet(std::uint64_t at, std::uint32_t bytes, ReadFrame& 
     }
     planes.assign(packet_.begin() + k_ahat_heading, packet_.end() - k_sensor_ticks);
   } else {
-    if (bytes <= k_sensor_ticks) refuse(std::to_string(bytes) + " bytes", "a PNG picture");
+    if (bytes <= k_sensor_ticks) refuse(std::to_string(bytes) + " bytes", "a PNG image");
     const std::string_view png(reinterpret_cast<const char*>(packet_.data()),
                                bytes - k_sensor_ticks);
     const Image picture =
-        png_of(png, file_.path() + ":byte " + std::to_string(at), "a PNG picture", true);
+        png_of(png, file_.path() + ":byte " + std::to_string(at), "a PNG image", true);
     if (picture.channels != 4 || picture.bits != 8 || picture.values.size() != 2 * plane_bytes) {
-      refuse("a picture of " + std::to_string(picture.width) + " x " +
+      refuse("an image of " + std::to_string(picture.width) + " x " +
                  std::to_string(picture.height) + " pixels",
              "the bytes of two planes as blue, green, red and alpha");
     }

@@ -23,7 +23,7 @@ constexpr std::array k_live_kind_list = {
     LiveKind{"shm", [](Cell& cell, LiveSettings live) -> std::unique_ptr<LiveSource> {
                if (cell.source.path.empty()) {
                  throw InputError(cell.source.position +
-                                  ".path: none; expected where the shm's socket shall be");
+                                  ".path: missing; expected the path of the shm socket");
                }
                require_lens(cell);
                return std::make_unique<ShmSource>(cell.source.path, cell.camera, live);
@@ -45,7 +45,7 @@ std::unique_ptr<LiveSource> open_live_source(Cell& cell, LiveSettings live) {
   if (kind == k_live_kind_list.end()) return nullptr;
   if (!cell.realtime) {
     throw InputError(source.position + ".kind: " + source.kind +
-                     " is live; expected a run in real time");
+                     " is a live source; expected a run in real time");
   }
   return kind->open(cell, live);
 }

@@ -125,7 +125,7 @@ std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance, Li
   }
   if (auto opened = open_live_source(cell, live)) return opened;
   if (source.path.empty()) {
-    throw InputError(source.position + ".path: none; expected the file or folder of the " +
+    throw InputError(source.position + ".path: missing; expected the file or folder of the " +
                      printable(source.kind));
   }
   const auto kind = std::find_if(k_kinds.begin(), k_kinds.end(),

@@ -17,8 +17,8 @@ std::uint16_t raw_depth(double metres, double unit_m) {
 void fill_pixels(PixelPlane reflectivity, PixelPlane depth, const Camera& camera,
                  FrameBuffer& pixels) {
   if (depth.width != reflectivity.width || depth.height != reflectivity.height) {
-    throw InputError(depth.name + ": another size than " + reflectivity.name +
-                     "; expected the same");
+    throw InputError(depth.name + ": size differs from " + reflectivity.name +
+                     "; expected equal sizes");
   }
   pixels.width = reflectivity.width;
   pixels.height = reflectivity.height;

@@ -55,7 +55,7 @@ std::optional<SourceLens> RecordingFrames::lens() const {
 
 std::string RecordingFrames::text() const {
   return "recording " + path_ + ", level " + std::string(name_of(reader_.level())) +
-         (reader_.level() == RecordingLevel::roi ? ": only inside its regions" : "");
+         (reader_.level() == RecordingLevel::roi ? ": pixels inside ROIs only" : "");
 }
 
 std::optional<Duration> RecordingFrames::unix_offset() const { return reader_.unix_offset(); }

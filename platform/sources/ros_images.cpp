@@ -75,7 +75,7 @@ double field_tangent_of(const std::array<double, 8>& d, double corner) {
 RosHeader ros_header_of(std::span<const std::uint8_t> message, const std::string& topic) {
   CdrReader from(message);
   RosHeader header = header_of(from);
-  if (from.failed()) fail(topic, "a message that is not whole", "the fields of its type");
+  if (from.failed()) fail(topic, "an incomplete message", "the fields of its type");
   return header;
 }
 
@@ -89,7 +89,7 @@ RosImageView ros_image_view(std::span<const std::uint8_t> message, const std::st
   image.big_endian = from.get<std::uint8_t>() != 0;
   image.row_bytes = from.get<std::uint32_t>();
   image.rows = from.get_bytes();
-  if (from.failed()) fail(topic, "an image that is not whole", "the fields of sensor_msgs/Image");
+  if (from.failed()) fail(topic, "an incomplete image", "the fields of sensor_msgs/Image");
   const auto encoding =
       std::find_if(std::begin(k_encodings), std::end(k_encodings),
                    [&](const Encoding& known) { return known.name == image.encoding; });
@@ -106,7 +106,7 @@ RosImageView ros_image_view(std::span<const std::uint8_t> message, const std::st
          std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
              std::string(encoding->name) + ", " + std::to_string(image.row_bytes) +
              " bytes a row and " + std::to_string(image.rows.size()) + " in all",
-         "rows that hold their pixels, and nothing else");
+         "rows of exactly these pixels");
   }
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
@@ -156,7 +156,7 @@ std::string lens_text_of_camera_info(std::span<const std::uint8_t> message,
   const std::string model = from.get_text();
   const auto count = from.get<std::uint32_t>();
   std::array<double, 8> d{};
-  if (count > k_distortion_max) fail(topic, "a CameraInfo that is not whole", "its fields");
+  if (count > k_distortion_max) fail(topic, "an incomplete CameraInfo", "its fields");
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto value = from.get<double>();
     if (i < d.size()) d[i] = value;
@@ -165,7 +165,7 @@ std::string lens_text_of_camera_info(std::span<const std::uint8_t> message,
   for (double& value : matrices) value = from.get<double>();
   std::array<std::uint32_t, 6> region{};  // binning x, y; offset x, y; height, width
   for (std::uint32_t& value : region) value = from.get<std::uint32_t>();
-  if (from.failed()) fail(topic, "a CameraInfo that is not whole", "its fields");
+  if (from.failed()) fail(topic, "an incomplete CameraInfo", "its fields");
   const bool plumb_bob = model == "plumb_bob" && count <= 5;
   if (!plumb_bob && !(model == "rational_polynomial" && count == 8)) {
     fail(topic,
@@ -174,7 +174,7 @@ std::string lens_text_of_camera_info(std::span<const std::uint8_t> message,
          "plumb_bob with 5 or rational_polynomial with 8, or a lens in the cell");
   }
   if (region[0] > 1 || region[1] > 1 || region[2] > 0 || region[3] > 0) {
-    fail(topic, "binning or a region of interest", "whole pictures");
+    fail(topic, "binning or a region of interest", "complete images");
   }
   const double fx = matrices[0], fy = matrices[4], cx = matrices[2], cy = matrices[5];
   if (!(fx >= 1) || !(fy >= 1) || !std::isfinite(cx + cy) ||

@@ -141,10 +141,9 @@ void RosbagFrames::choose_topics() {
     bright = only([&](const std::string& t) { return t != depth && !is_depth(t); });
   const auto check = [&](const char* key, const std::string& topic) {
     if (!topic.empty() && images_.contains(topic)) return;
-    throw InputError(key_position(key) + ": " +
-                     (topic.empty() ? "none named" : "no image on " + printable(topic)) +
-                     "; expected one of the topics with images in " + source_.path + ": " +
-                     names_of(images_));
+    throw InputError(
+        key_position(key) + ": " + (topic.empty() ? "missing" : "no image on " + printable(topic)) +
+        "; expected one of the image topics in " + source_.path + ": " + names_of(images_));
   };
   check("reflectivity_topic", bright);
   check("depth_topic", depth);
@@ -164,7 +163,7 @@ void RosbagFrames::choose_poses() {
   if (!topic.empty()) {
     if (!pose_frames_.contains(topic)) {
       throw InputError(key_position("pose_topic") + ": no PoseStamped on " + printable(topic) +
-                       "; expected the camera's pose there");
+                       "; expected the camera's pose");
     }
     camera_frame_ = camera_of(topic);
   } else {
@@ -181,7 +180,7 @@ void RosbagFrames::choose_poses() {
   if (transforms_.root_of(world_) != transforms_.root_of(camera_frame_)) {
     throw InputError(key_position("world_frame") + ": \"" + world_ +
                      "\" has no chain of transforms to " + camera_frame_ +
-                     "; expected a frame of its tree, whose root is " +
+                     "; expected a frame of its tree with root " +
                      transforms_.root_of(camera_frame_));
   }
 }
@@ -268,7 +267,7 @@ std::string RosbagFrames::text() const {
   return "rosbag " + source_.path + ": " + printable(source_.reflectivity_topic) + " and " +
          printable(source_.depth_topic) +
          (world_.empty() ? ", no head pose" : ", head pose in " + printable(world_)) +
-         (clocks_differ() ? ", log times of another clock than the stamps" : "");
+         (clocks_differ() ? ", log times and stamps of different clocks" : "");
 }
 
 std::optional<Duration> RosbagFrames::unix_offset() const {

@@ -42,7 +42,7 @@ sim::Scenario scenario_of(const Cell& cell, const Cell& drawn) {
     if (stated.marker_count != body.tool.marker_count) {
       throw InputError(cell.file + ": simulator.drawn: its tool \"" + body.tool.name.data() +
                        "\" has " + std::to_string(body.tool.marker_count) + " markers; expected " +
-                       std::to_string(count) + ", as \"" + stated.name.data() + "\" here");
+                       std::to_string(count) + ", as \"" + stated.name.data() + "\" in the cell");
     }
     const RigidFit fit = fit_rigid(std::span(stated.markers_m).first(count),
                                    std::span(body.tool.markers_m).first(count));

@@ -72,7 +72,7 @@ sockaddr_un address_of(const std::string& path) {
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) {
     throw InputError(path + ": " + std::to_string(path.size()) +
-                     " characters; expected a socket's path of at most " +
+                     " characters; expected a socket path of at most " +
                      std::to_string(sizeof address.sun_path - 1));
   }
   std::copy(path.begin(), path.end(), address.sun_path);
@@ -89,11 +89,11 @@ void remove_stale(const std::string& path, const sockaddr_un& address) {
   struct stat state {};
   if (::lstat(path.c_str(), &state) != 0) return;
   if (!S_ISSOCK(state.st_mode)) {
-    throw InputError(path + ": a file that is no socket; expected a path for one");
+    throw InputError(path + ": a file that is not a socket; expected a socket path");
   }
   const Descriptor probe = seqpacket();
   if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
-    throw InputError(path + ": another process listens there; expected a path of its own");
+    throw InputError(path + ": another process listens on it; expected another path");
   }
   ::unlink(path.c_str());
 }
@@ -222,13 +222,13 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
   } else if (hello.slots == 0 || hello.slots > k_slots_max || hello.slot_bytes % 8 != 0 ||
              hello.slot_bytes < GLINT_FRAMES_HEAD + planes ||
              hello.slot_bytes > 2 * planes + 4096) {
-    refuse("slots of another size than glint_frames.h makes");
+    refuse("slot size differs from that of glint_frames.h");
   } else if (memory.get() < 0 || ::fstat(memory.get(), &state) != 0 ||
              static_cast<std::uint64_t>(state.st_size) < hello.slots * hello.slot_bytes) {
-    refuse("less shared memory than its slots take");
+    refuse("shared memory smaller than its slots");
   } else if (const int seals = ::fcntl(memory.get(), F_GET_SEALS);
              seals < 0 || (seals & F_SEAL_SHRINK) == 0) {
-    refuse("shared memory that may shrink; expected F_SEAL_SHRINK");
+    refuse("shared memory without F_SEAL_SHRINK");
   } else {
     producer->memory.emplace(memory.get(),
                              static_cast<std::size_t>(hello.slots * hello.slot_bytes));
@@ -309,8 +309,8 @@ SourceReport ShmSource::report() {
   const auto add = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) report.failures.push_back(std::to_string(count) + text);
   };
-  add(torn_, " frames were written while they were read");
-  add(malformed_, " messages of no known kind");
+  add(torn_, " frames overwritten during reading");
+  add(malformed_, " messages of unknown type");
   add(refused_, " producers refused, the first: " + first_refusal_);
   return report;
 }

@@ -105,8 +105,8 @@ void StreamRecorderFrames::list_archive() {
     add(entry.name, entry.offset, entry.bytes);
   }
   if (cut > 0) {
-    missing_ = archive_->path() + ": cut short; " + std::to_string(cut) +
-               " bytes behind its last whole file are not read";
+    missing_ = archive_->path() + ": truncated; " + std::to_string(cut) +
+               " bytes after its last complete file not read";
   }
 }
 
@@ -129,7 +129,7 @@ void StreamRecorderFrames::read_poses() {
       read_numbers(read_file(extrinsics, k_text_bytes_max, "16 numbers"), numbers);
   const std::optional<Pose> T_camera_rig = pose_of_matrix(numbers);
   if (count != numbers.size() || !T_camera_rig) {
-    throw InputError(extrinsics + ": no rigid transform; expected 16 numbers, rig to camera");
+    throw InputError(extrinsics + ": not a rigid transform; expected 16 numbers, rig to camera");
   }
   const Pose T_rig_camera = T_camera_rig->inverse();
   const std::string text = read_file(poses, k_data_bytes_max, "a stamp and 16 numbers a line");
@@ -177,11 +177,10 @@ bool StreamRecorderFrames::next(ReadFrame& frame) {
 
 std::string StreamRecorderFrames::contents_of(const File& file) const {
   if (archive_ == nullptr) {
-    return read_file((fs::path(prefix_) / file.name).string(), k_picture_bytes_max,
-                     "a PGM picture");
+    return read_file((fs::path(prefix_) / file.name).string(), k_picture_bytes_max, "a PGM image");
   }
   if (file.bytes > k_picture_bytes_max) {
-    archive_->refuse(file.offset, std::to_string(file.bytes) + " bytes", "a PGM picture");
+    archive_->refuse(file.offset, std::to_string(file.bytes) + " bytes", "a PGM image");
   }
   Bytes bytes;
   archive_->read(file.offset, file.bytes, bytes);
@@ -192,7 +191,7 @@ void StreamRecorderFrames::read_frame(std::uint64_t stamp, const Pair& pair, Rea
   const auto plane_of = [&](const File& file, const char* kind, const File& other) {
     if (file.name.empty()) {
       throw InputError(prefix_ + ": " + printable(other.name) + " has no " + kind +
-                       " beside it; expected both of a frame");
+                       " file; expected both files of a frame");
     }
     const std::string name = prefix_ + ":" + printable(file.name);
     Image picture = pgm_of(contents_of(file), name, {k_image_side_max, k_image_side_max, 16});

@@ -61,7 +61,7 @@ std::vector<TarEntry> tar_entries(const InputFile& archive, std::uint64_t& trunc
     }
     const auto bytes = octal_at(header, k_size, k_size_length);
     if (!bytes || !sum_holds(header)) {
-      archive.refuse(at, "no header of a file", "a tar archive");
+      archive.refuse(at, "no tar header", "a tar archive");
     }
     const std::uint64_t contents = at + k_block;
     if (*bytes > archive.size() - contents) break;

@@ -16,15 +16,15 @@ void check_camera(const Cell& cell, const FrameLoop& loop) {
   const std::string expected = text(model.width, model.height, cell.camera.reflectivity_bits);
   if (found != expected) {
     throw InputError("the loop has frames of " + found + "; expected " + expected +
-                     ", as the cell's camera has");
+                     " (the cell's camera)");
   }
 }
 
 void check_for_companion(const Cell& cell) {
   if (cell.tool_changes.empty()) return;
   throw InputError(cell.file +
-                   ": has a [[tool_change]]; expected none, for a board keeps the tools that it "
-                   "starts with (absent = [..] leaves some out)");
+                   ": [[tool_change]] is not supported on a board; expected none (absent = [..] "
+                   "leaves tools out from the start)");
 }
 
 }  // namespace glint

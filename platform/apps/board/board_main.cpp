@@ -52,7 +52,7 @@ void write(const std::string& file, const nlohmann::ordered_json& figures) {
   }
   if (const std::string reason = write_file_atomically(file, figures.dump(2) + "\n");
       !reason.empty()) {
-    throw InputError(file + ": cannot be written: " + reason + "; expected a place for a file");
+    throw InputError(file + ": cannot be written: " + reason + "; expected a writable path");
   }
 }
 
@@ -125,23 +125,24 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   glint::Arguments arguments;
-  CLI::App app{"Glint on a board: frames from memory or live ones, poses to CAN and DDS"};
+  CLI::App app{"Glint on a board: frames from memory or a live source, poses to CAN and DDS"};
   app.add_option("--config,--cell", arguments.cell_file, "cell file; default: the built-in cell");
   app.add_option("--board", arguments.board,
-                 "costs, a built-in board or a board file: overruns are then noticed ahead");
-  app.add_option("--can", arguments.can, "socketcan:IF or log:FILE, in place of the cell's");
-  app.add_option("--json", arguments.json_file, "the figures; default: standard output");
+                 "built-in board or board file: its costs predict overruns");
+  app.add_option("--can", arguments.can,
+                 "CAN output, socketcan:IF or log:FILE; default: the cell's");
+  app.add_option("--json", arguments.json_file, "file of the figures; default: standard output");
   app.add_option("--record", arguments.options.record,
-                 "a recording of the run, at the level of the cell's [record]; default: none");
-  app.add_option("--out", arguments.options.out, "folder of a CAN log and of the recording");
-  app.add_option("--core", arguments.options.core, "the core for all threads of the run");
-  app.add_flag("--dds", arguments.with_dds, "publish over DDS as the cell says");
+                 "recording of the run, at the cell's [record] level; default: none");
+  app.add_option("--out", arguments.options.out, "folder of the CAN log and the recording");
+  app.add_option("--core", arguments.options.core, "core of all threads");
+  app.add_flag("--dds", arguments.with_dds, "publish over DDS by the cell's [dds]");
   auto* const frames = app.add_option("--frames", arguments.frames_file,
                                       "loop of frames made by glint_board_frames; default: the "
                                       "cell's [source], " +
                                           glint::live_kinds());
   app.add_option("--count", arguments.options.frames,
-                 "frames to process; 0: until SIGTERM or SIGINT, in constant memory")
+                 "number of frames; 0: until SIGTERM or SIGINT, in constant memory")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   auto* const system = app.add_flag("--measure-system", arguments.measure_system,

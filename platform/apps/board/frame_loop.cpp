@@ -39,7 +39,7 @@ void check(const std::string& path, const FrameLoopHeader& header, std::size_t s
     if (!good) refuse(path, offset, std::string(name) + " " + std::to_string(found), expected);
   };
   if (std::memcmp(header.magic, FrameLoopHeader{}.magic, sizeof header.magic) != 0) {
-    refuse(path, 0, "no loop of frames", "GLNTLOOP, as glint_board_frames writes it");
+    refuse(path, 0, "no loop of frames", "GLNTLOOP, a file of glint_board_frames");
   }
   number(offsetof(FrameLoopHeader, layout), "layout", header.layout, header.layout == 1, "1");
   number(offsetof(FrameLoopHeader, width), "width", header.width,

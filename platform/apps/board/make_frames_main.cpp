@@ -45,7 +45,7 @@ int make(const Arguments& arguments) {
   if (arguments.first < 0 || arguments.first + arguments.frames > all) {
     throw InputError("--first " + std::to_string(arguments.first) + " --frames " +
                      std::to_string(arguments.frames) + ": the scenario has " +
-                     std::to_string(all) + " frames; expected at most that");
+                     std::to_string(all) + " frames; expected at most so many");
   }
   FrameLoopHeader header;
   header.width = static_cast<std::uint32_t>(cell.camera.model.width);
@@ -78,12 +78,12 @@ int make(const Arguments& arguments) {
 int main(int argc, char** argv) {
   glint::Arguments arguments;
   CLI::App app{"Renders a loop of frames for glint_board"};
-  app.add_option("file", arguments.file, "the loop to make")->required();
+  app.add_option("file", arguments.file, "loop file to write")->required();
   app.add_option("--config,--cell", arguments.cell_file, "cell file; default: the built-in cell");
-  app.add_option("--frames", arguments.frames, "how many")->check(CLI::PositiveNumber);
-  app.add_option("--first", arguments.first, "the first one's number in the scenario");
+  app.add_option("--frames", arguments.frames, "number of frames")->check(CLI::PositiveNumber);
+  app.add_option("--first", arguments.first, "first frame's number in the scenario");
   app.add_option("--worst-every", arguments.worst_every,
-                 "each so-manieth is drawn as a worst input; 0: none");
+                 "every Nth frame is a worst input; 0: none");
   app.footer("Example: glint_board_frames loop.frames --frames 48 --worst-every 8");
   return glint::exit_code_of(app, "glint_board_frames", [&] {
     app.parse(argc, argv);

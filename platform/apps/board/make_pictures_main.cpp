@@ -26,7 +26,7 @@ void write(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream stream(path, std::ios::binary);
   stream << bytes;
   stream.close();
-  if (!stream) throw InputError(path.string() + ": cannot be written; expected a folder for it");
+  if (!stream) throw InputError(path.string() + ": cannot be written; expected a writable folder");
 }
 
 // Pinhole camera matrix with pixel centres at integers.
@@ -62,7 +62,7 @@ int make(const Arguments& arguments) {
   if (arguments.first < 0 || last >= simulator.frame_count()) {
     throw InputError("--first " + std::to_string(arguments.first) + " to " + std::to_string(last) +
                      ": the scenario has " + std::to_string(simulator.frame_count()) +
-                     " frames; expected at most that");
+                     " frames; expected at most so many");
   }
   const RobotModel robot = load_robot(arguments.robot);
   MappingCamera camera(simulator,
@@ -81,7 +81,7 @@ int make(const Arguments& arguments) {
     write(folder / (std::string(name) + ".depth.npy"), npy_float32_bytes(depth));
     write(folder / (std::string(name) + ".pose.txt"), pose_text(frame.head.T_world_camera));
   }
-  std::printf("%s: %d depth pictures of %s\n", arguments.folder.c_str(), arguments.images,
+  std::printf("%s: %d depth images of %s\n", arguments.folder.c_str(), arguments.images,
               robot.name.c_str());
   return 0;
 }
@@ -91,16 +91,16 @@ int make(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   glint::Arguments arguments;
-  CLI::App app{"Renders depth pictures with a robot for glint_board's background"};
-  app.add_option("folder", arguments.folder, "where they go")->required();
+  CLI::App app{"Renders depth images with a robot for glint_board's background group"};
+  app.add_option("folder", arguments.folder, "folder of the images")->required();
   app.add_option("--config,--cell", arguments.cell_file,
-                 "cell file: scenario, where its [robot] stands, the joints of its [mapping]")
+                 "cell file with a scenario, [robot] and the joints of [mapping]")
       ->required();
-  app.add_option("--urdf", arguments.robot.urdf, "the robot's description")->required();
-  app.add_option("--package-dir", arguments.robot.package_dirs, "where package:// leads");
-  app.add_option("--pictures", arguments.images, "how many")->check(CLI::PositiveNumber);
-  app.add_option("--first", arguments.first, "the first one's frame in the scenario");
-  app.add_option("--every", arguments.every, "frames from one to the next")
+  app.add_option("--urdf", arguments.robot.urdf, "URDF file of the robot")->required();
+  app.add_option("--package-dir", arguments.robot.package_dirs, "folders of package:// paths");
+  app.add_option("--pictures", arguments.images, "number of images")->check(CLI::PositiveNumber);
+  app.add_option("--first", arguments.first, "first image's frame in the scenario");
+  app.add_option("--every", arguments.every, "frames from one image to the next")
       ->check(CLI::PositiveNumber);
   app.footer("Example: glint_board_pictures pictures --config cell.toml --urdf arm.urdf");
   return glint::exit_code_of(app, "glint_board_pictures", [&] {

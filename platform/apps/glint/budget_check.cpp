@@ -70,25 +70,26 @@ int run_check(const CheckArguments& arguments) {
 void add_budget_check(CLI::App& budget, int& exit_code) {
   auto arguments = std::make_shared<CheckArguments>();
   CheckOptions& options = arguments->options;
-  CLI::App* command =
-      budget.add_subcommand("check", "responses, chains, bus and slack of a plan on a board");
+  CLI::App* command = budget.add_subcommand(
+      "check", "Compute response times, chains, bus load and slack of a plan on a board");
   add_cell_option(*command, arguments->cell);
   command->add_option("--board", arguments->board, "board file, or a built-in board's name")
       ->required();
   command->add_option("--plan", arguments->plan, "plan file of `glint budget schedule`")
       ->required();
   command->add_option("--foreign", options.foreign, "file of other nodes' CAN frames");
-  command->add_option("--scale", arguments->scale, "NODE=FACTOR: what if it were slower");
-  command->add_option("--clock", options.clock, "fraction of the declared clock: what if")
+  command->add_option("--scale", arguments->scale, "NODE=FACTOR: this node is FACTOR times slower");
+  command->add_option("--clock", options.clock, "clock as a fraction of the declared one")
       ->check(in_range(0.001, 1000.0))
       ->capture_default_str();
-  command->add_option("--margin", options.margin_percent, "least slack of the system in %")
+  command->add_option("--margin", options.margin_percent, "required slack of the system, %")
       ->capture_default_str();
-  command->add_option("--observed", options.observed, "summary.json of a run to hold against it");
-  command->add_option("--json", arguments->json, "write the figures here");
+  command->add_option("--observed", options.observed,
+                      "summary.json of a run to compare with the bounds");
+  command->add_option("--json", arguments->json, "file of the figures");
   command->footer(
-      "Exit code 1: a bound above its deadline, an observation above its bound, or too little\n"
-      "margin.\n"
+      "Exit code 1: a bound above its deadline, an observation above its bound, or a slack\n"
+      "below --margin.\n"
       "Example: glint budget check --board cortex-a72-emulated --plan plan.toml --clock 0.8");
   command->callback([arguments, &exit_code] { exit_code = run_check(*arguments); });
 }

@@ -85,27 +85,29 @@ int draw_curve(const CurveCommand& command) {
 }  // namespace
 
 void add_budget_curve(CLI::App& budget, int& exit_code) {
-  CLI::App* command =
-      budget.add_subcommand("curve", "A frame's cost against tools and strays, beside its bound");
+  CLI::App* command = budget.add_subcommand(
+      "curve", "Measure a frame's cost against tools and strays, beside its bound");
   auto arguments = std::make_shared<CurveCommand>();
   command->footer(
       "Example: glint budget curve --board x86-64-emulated --out out --json out/curve.json\n"
-      "0 to 200 strays with 5 tools, 1 to 16 tools with 20 strays. Exit code 1 where instructions "
+      "0 to 200 strays with 5 tools, 1 to 16 tools with 20 strays. Exit code 1: instructions "
       "exceed the bound.");
-  command->add_option("--board", arguments->board, "whose costs bound the frame")->required();
-  command->add_option("--count", arguments->target.count, "what is counted")
+  command
+      ->add_option("--board", arguments->board, "board file or built-in board: costs for the bound")
+      ->required();
+  command->add_option("--count", arguments->target.count, "counted quantity")
       ->check(CLI::IsMember({"instructions", "time"}))
       ->capture_default_str();
-  command->add_option("--arch", arguments->target.arch, "of the measuring program")
+  command->add_option("--arch", arguments->target.arch, "architecture of the measuring program")
       ->check(CLI::IsMember({"x86-64", "arm64"}))
       ->capture_default_str();
-  command->add_option("--frames", arguments->frames, "at each point")
+  command->add_option("--frames", arguments->frames, "frames at each point")
       ->check(in_range(20, 100'000))
       ->capture_default_str();
   command->add_option("--measure-program", arguments->target.program_file,
-                      "glint_measure_crowd, where it is not ours");
-  command->add_option("--json", arguments->json, "write the figures here");
-  command->add_option("--out", arguments->out, "folder for two plots");
+                      "path of glint_measure_crowd; default: beside glint");
+  command->add_option("--json", arguments->json, "file of the figures");
+  command->add_option("--out", arguments->out, "folder of the two plots");
   command->callback([arguments, &exit_code] { exit_code = draw_curve(*arguments); });
 }
 

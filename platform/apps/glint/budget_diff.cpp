@@ -38,11 +38,11 @@ int print_diff(const DiffArguments& arguments) {
   for (const std::string& name : diff.only_after)
     std::printf("only after: %s\n", printable(name).c_str());
   if (diff.exact) {
-    std::printf("instruction counts: every difference is one\n");
+    std::printf("instruction counts: every difference is real\n");
   } else {
     std::printf(
-        "slower or faster where both Mann-Whitney and the interval of the medians' ratio "
-        "say so, at %.3g %% a row, %.3g %% for all rows together\n",
+        "slower or faster: both the Mann-Whitney test and the interval of the medians' ratio "
+        "agree, at %.3g %% a row, %.3g %% for all rows together\n",
         100 * diff.row_confidence, 100 * arguments.settings.confidence);
   }
   write_json(arguments.json, as_json(diff));
@@ -52,25 +52,26 @@ int print_diff(const DiffArguments& arguments) {
 }  // namespace
 
 void add_budget_diff(CLI::App& budget, int& exit_code) {
-  CLI::App* command = budget.add_subcommand("diff", "What became slower, told from noise");
+  CLI::App* command = budget.add_subcommand(
+      "diff", "Compare two measurements: which node or kernel became slower beyond noise");
   auto arguments = std::make_shared<DiffArguments>();
   command->footer(
       "Examples: glint budget diff before.json after.json\n"
       "  glint budget diff out_before out_after --tolerance 5\n"
-      "Exit 1 only where something is slower by more than the tolerance for certain.");
+      "Exit 1: a row is significantly slower by more than the tolerance.");
   command->add_option("before", arguments->before, "measurement, run folder or trace.spans")
       ->required();
-  command->add_option("after", arguments->after, "the other one, of the same kind")->required();
-  command
-      ->add_option("--tolerance", arguments->settings.tolerance_percent, "percent that may be lost")
+  command->add_option("after", arguments->after, "second measurement, of the same kind")
+      ->required();
+  command->add_option("--tolerance", arguments->settings.tolerance_percent, "accepted slowdown, %")
       ->capture_default_str()
       ->check(in_range(0.0, 1000.0));
   command
       ->add_option("--confidence", arguments->settings.confidence,
-                   "that nothing is called slower by chance, for all rows together")
+                   "probability of no false \"slower\" in any row")
       ->capture_default_str()
       ->check(in_range(0.5, 0.9999));
-  command->add_option("--json", arguments->json, "write the table's figures here");
+  command->add_option("--json", arguments->json, "file of the table's figures");
   command->callback([arguments, &exit_code] { exit_code = print_diff(*arguments); });
 }
 

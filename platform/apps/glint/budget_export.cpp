@@ -27,16 +27,17 @@ int export_trace(const ExportArguments& arguments) {
 
 void add_budget_export(CLI::App& budget, int& exit_code) {
   CLI::App* command =
-      budget.add_subcommand("export", "A run's trace as Perfetto, Chrome JSON, BTF or CSV");
+      budget.add_subcommand("export", "Export a run's trace as Perfetto, Chrome JSON, BTF or CSV");
   auto arguments = std::make_shared<ExportArguments>();
   command->footer(
       "Example: glint budget export --trace out/trace.spans --format perfetto --out run.pftrace\n"
       "perfetto: ui.perfetto.dev; chrome: chrome://tracing; btf: Trace Compass, APP4MC.");
-  command->add_option("--trace", arguments->trace, "a trace.spans of glint run")->required();
+  command->add_option("--trace", arguments->trace, "trace.spans of `glint run --trace`")
+      ->required();
   command->add_option("--format", arguments->format, "perfetto, chrome, btf or csv")
       ->capture_default_str();
-  command->add_option("--frame", arguments->frame, "only what ran about this frame");
-  command->add_option("--out", arguments->out, "the file to write")->required();
+  command->add_option("--frame", arguments->frame, "only the spans near this frame");
+  command->add_option("--out", arguments->out, "output file")->required();
   command->callback([arguments, &exit_code] { exit_code = export_trace(*arguments); });
 }
 

@@ -91,7 +91,7 @@ void print(const Measurement& measurement) {
               measurement.board.empty() ? "costs fitted now"
                                         : printable("costs of board " + measurement.board).c_str());
   std::printf("%-15s %12s %12s %6s %6s  %-16s %s\n", "kernel", "bound", "observed max", "ratio",
-              "cell", "worst input", "judged half above (worst excess)");
+              "cell", "worst input", "validation half above (worst excess)");
   for (const MeasuredCosts& kernel : measurement.kernels) {
     const std::string worst = std::string(name_of(kernel.worst_input.kind)) + " " +
                               std::to_string(kernel.worst_input.number);
@@ -146,14 +146,14 @@ void write_board(const MeasureCommand& command, const Measurement& measurement) 
 int measure_costs(const MeasureCommand& command) {
   const MeasureRequest request = request_of(command);
   if (!command.write.empty() && !command.board.empty()) {
-    throw InputError("--write makes a board file of what it measures; expected it without --board");
+    throw InputError(
+        "--write stores the measured costs in a board file; expected it without --board");
   }
   if (request.count_instructions && !command.enemies.empty()) {
     throw InputError("--enemy changes time, not instructions; expected it with --count time");
   }
   if (request.count_instructions && command.passes > 1) {
-    throw InputError(
-        "--passes is for times, as instructions repeat; expected it with --count time");
+    throw InputError("--passes: instruction counts repeat exactly; expected it with --count time");
   }
   const BoardExpectation expected = expected_board();
   Board board;
@@ -200,52 +200,52 @@ int measure_costs(const MeasureCommand& command) {
 
 void add_budget_measure(CLI::App& budget, int& exit_code) {
   CLI::App* command = budget.add_subcommand(
-      "measure", "What each kernel's loops cost, and whether the bound made of it holds");
+      "measure", "Measure the cost of each kernel's loops, and validate the bound from it");
   auto arguments = std::make_shared<MeasureCommand>();
   arguments->arch = k_own_arch;
   command->footer(
       "Example: glint budget measure --count instructions --arch arm64 --json measure.json\n"
-      "Costs are an upper envelope of one half of the inputs, judged on the other, with a margin.\n"
-      "With --board the bound is that board's. Exit code 1 where a call costs more than its "
+      "Costs are an upper envelope of one half of the inputs with a margin, validated on the "
+      "other\n"
+      "half. With --board the bound is that board's. Exit code 1: a call costs more than its "
       "bound.\n"
-      "Instructions are counted in an emulator (Debian package qemu-user) and repeat exactly.");
-  command->add_option("--count", arguments->count, "what is counted")
+      "An emulator (Debian package qemu-user) counts instructions; the counts repeat exactly.");
+  command->add_option("--count", arguments->count, "counted quantity")
       ->check(CLI::IsMember({"instructions", "time"}))
       ->capture_default_str();
-  command->add_option("--arch", arguments->arch, "of the measuring program")
+  command->add_option("--arch", arguments->arch, "architecture of the measuring program")
       ->check(CLI::IsMember({"x86-64", "arm64"}))
       ->capture_default_str();
-  command->add_option("--inputs", arguments->inputs, "of each kernel")
+  command->add_option("--inputs", arguments->inputs, "inputs of each kernel")
       ->check(in_range(20, 10'000'000))
       ->capture_default_str();
-  command->add_option("--kernel", arguments->kernel, "this one only");
-  command->add_option("--board", arguments->board, "judge this board's costs, fit none");
+  command->add_option("--kernel", arguments->kernel, "one kernel only");
+  command->add_option("--board", arguments->board, "board whose costs are validated; no fit");
   command->add_option("--write", arguments->write,
-                      "make this board file of the costs; with --kernel: put "
-                      "that one's into the file");
-  command->add_option("--margin", arguments->margin_percent, "percent on top of fitted costs")
+                      "board file to write; with --kernel: board file to update");
+  command->add_option("--margin", arguments->margin_percent, "margin added to the fitted costs, %")
       ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   command
       ->add_option("--ns-per-instruction", arguments->ns_per_instruction,
-                   "declared in the board file")
+                   "time of an instruction, declared in the board file")
       ->check(in_range(0.001, 1000.0))
       ->capture_default_str();
-  command->add_option("--cache", arguments->cache, "warm, or evicted before each call")
+  command->add_option("--cache", arguments->cache, "warm, or cold: evicted before each call")
       ->check(CLI::IsMember({"warm", "cold"}))
       ->capture_default_str();
   command
       ->add_option("--passes", arguments->passes,
-                   "over all inputs; of each input the least time counts")
+                   "passes over all inputs; each input counts with its least time")
       ->check(in_range(1, 100))
       ->capture_default_str();
-  command->add_option("--enemy", arguments->enemies, "what to be measured beside, too")
+  command->add_option("--enemy", arguments->enemies, "load that runs beside a further measurement")
       ->check(CLI::IsMember({"none", "cache", "bandwidth", "other_core", "interrupts"}));
-  command->add_option("--jobs", arguments->jobs, "kernels counted at a time; 0: one a core")
+  command->add_option("--jobs", arguments->jobs, "kernels counted in parallel; 0: one a core")
       ->check(in_range(0, 256));
   command->add_option("--measure-program", arguments->program,
-                      "glint_measure, where it is not ours");
-  command->add_option("--json", arguments->json, "write the figures here");
+                      "path of glint_measure; default: beside glint");
+  command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] { exit_code = measure_costs(*arguments); });
 }
 

@@ -42,19 +42,21 @@ int write_report(const ReportArguments& arguments) {
 }  // namespace
 
 void add_budget_report(CLI::App& budget, int& exit_code) {
-  CLI::App* command = budget.add_subcommand("report", "Bound, estimate and observed on one page");
+  CLI::App* command =
+      budget.add_subcommand("report", "Write bounds, estimates and observations to one page");
   auto arguments = std::make_shared<ReportArguments>();
   command->footer(
       "Example: glint budget report --measure costs.json --check check.json --run out --out "
       "report\n"
-      "Exit 1 where a bound misses its deadline, or something observed lies above its bound.");
+      "Exit 1: a bound above its deadline, or an observation above its bound.");
   command->add_option("--measure", arguments->paths.measures,
-                      "files of glint budget measure --json");
-  command->add_option("--check", arguments->paths.check, "a file of glint budget check --json");
+                      "files of `glint budget measure --json`");
+  command->add_option("--check", arguments->paths.check, "file of `glint budget check --json`");
   command->add_option("--run", arguments->paths.run_folder,
-                      "a folder of glint run --out: summary.json and trace.spans");
+                      "folder of `glint run --out`: summary.json and trace.spans");
   command->add_option("--footprint", arguments->paths.footprint, "memory, stack and code by node");
-  command->add_option("--worst", arguments->options.worst_frames, "how many worst frames to list")
+  command
+      ->add_option("--worst", arguments->options.worst_frames, "number of worst frames in the list")
       ->capture_default_str()
       ->check(in_range(1, 1000));
   command->add_option("--out", arguments->out, "folder of budget.html, budget.md and figures/")

@@ -86,19 +86,19 @@ int schedule(const ScheduleArguments& arguments) {
 
 void add_budget_schedule(CLI::App& budget, int& exit_code) {
   auto arguments = std::make_shared<ScheduleArguments>();
-  CLI::App* command = budget.add_subcommand(
-      "schedule", "which core runs which node, in which order and at which priority");
+  CLI::App* command =
+      budget.add_subcommand("schedule", "Assign each node to a core, with order and priority");
   add_cell_option(*command, arguments->cell);
   command->add_option("--board", arguments->board, "board file, or a built-in board's name")
       ->required();
   command->add_option("--cores", arguments->cores, "1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
-  command->add_option("--load", arguments->load, "place for the bounds or for a typical load")
+  command->add_option("--load", arguments->load, "schedule for the bounds or for a typical load")
       ->check(CLI::IsMember({"bound", "typical"}))
       ->capture_default_str();
   command->add_option("--trace", arguments->trace, "trace.spans of a run with that load");
-  command->add_option("--out", arguments->out, "write the plan here")->capture_default_str();
+  command->add_option("--out", arguments->out, "plan file to write")->capture_default_str();
   command->footer(
       "Example: glint budget schedule --board cortex-a72-emulated --cores 2 --out plan.toml");
   command->callback([arguments, &exit_code] { exit_code = schedule(*arguments); });

@@ -81,9 +81,10 @@ int run_align(const AlignArguments& arguments) {
   for (const double distance : result.distances_m) distances_mm.push_back(1e3 * distance);
   finish_calibration(
       arguments.output, figures,
-      {{"align.toml", figures_toml(figures,
-                                   "glint calibrate align: [robot] as a cell has it, "
-                                   "where the reference is the robot's base")},
+      {{"align.toml",
+        figures_toml(
+            figures,
+            "glint calibrate align: [robot] of a cell, if the reference is the robot's base")},
        {"align.svg", residual_plot({"Align: distance from the reference", "distance [mm]",
                                     distances_mm, &result.kept})}});
   return 0;
@@ -93,27 +94,28 @@ int run_align(const AlignArguments& arguments) {
 
 void add_calibrate_align(CLI::App& calibrate, int& exit_code) {
   CLI::App* command = calibrate.add_subcommand(
-      "align", "Frame, lever arm and clock of a reference tracker that sees the same tool");
+      "align",
+      "Align a reference tracker: frame, lever arm and clock, from the same tool's motion");
   auto arguments = std::make_shared<AlignArguments>();
   command->footer(
       "Example: glint calibrate align --poses out/tip.tum --of-tip --tool pen.toml \\\n"
       "           --reference robot.tum --json align.json\n"
-      "Move the tool to and fro and turn it about two axes. offset_ms: the reference's stamp of\n"
-      "an instant less the poses' stamp.");
+      "Move the tool to and fro and turn it about two axes. offset_ms: the reference's stamp\n"
+      "minus the poses' stamp of the same instant.");
   add_pose_options(*command, arguments->source);
   command
       ->add_option("--reference", arguments->reference,
-                   "the same motion by the reference: TUM text, or EuRoC-like CSV")
+                   "poses of the same motion from the reference: TUM text or EuRoC-like CSV")
       ->required();
   command
       ->add_option("--max-offset-s", arguments->offset_max_s,
-                   "how far the clocks may differ, either way")
+                   "largest offset of the clocks, either sign")
       ->check(in_range(0.0, 60.0))
       ->capture_default_str();
   command->add_flag("--align-starts", arguments->align_starts,
-                    "the clocks have nothing in common: take both series to start at once");
+                    "unrelated clocks: align the starts of both series");
   command->add_flag("--no-lever", arguments->no_lever,
-                    "both see the same frame of the tool: no lever arm to find");
+                    "both report the same frame of the tool: no lever arm is estimated");
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_align(*arguments); });
 }

@@ -65,7 +65,7 @@ int run_bias(const BiasArguments& arguments) {
   finish_calibration(
       arguments.output, figures,
       {{"bias.toml",
-        figures_toml(figures, "glint calibrate bias: a cell takes it by [correction] file")},
+        figures_toml(figures, "glint calibrate bias: for [correction] file of a cell")},
        {"bias.svg", residual_plot({"Bias: distance from the reference, corrected", "distance [mm]",
                                    distances_mm, &result.kept})}});
   return 0;
@@ -75,25 +75,23 @@ int run_bias(const BiasArguments& arguments) {
 
 void add_calibrate_bias(CLI::App& calibrate, int& exit_code) {
   CLI::App* command = calibrate.add_subcommand(
-      "bias", "The mean error at rest against a reference, as a correction where it holds");
+      "bias", "Estimate the mean error at rest against a reference, as a correction");
   auto arguments = std::make_shared<BiasArguments>();
   command->footer(
       "Example: glint calibrate bias --poses still.tum --reference tracker.tum \\\n"
       "           --align align.toml --json bias.json\n"
       "Poses are of the tool in the camera's frame. Hold camera and tool still, a second or more\n"
-      "at each place; the correction holds for the distances and angles that were seen. "
-      "align.toml\n"
-      "is of `glint calibrate align`, from another recording: what it was fitted to has no mean\n"
-      "error left. A cell takes the correction off by [correction] file = \"bias.toml\", no other\n"
-      "does.");
+      "at each place; the correction holds for the recorded distances and angles. Take align.toml\n"
+      "of `glint calibrate align` from another recording: its own one has no mean error left.\n"
+      "Entry in a cell, which then subtracts the error: [correction] file = \"bias.toml\".");
   add_pose_options(*command, arguments->source);
   command
       ->add_option("--reference", arguments->reference,
-                   "the same tool by the reference: TUM text, or EuRoC-like CSV")
+                   "poses of the same tool from the reference: TUM text or EuRoC-like CSV")
       ->required();
   command->add_option("--align", arguments->align,
-                      "align.toml: how frames, body and clocks lie; left out: they are the same");
-  command->add_option("--along", arguments->along, "whose axes the error is constant along")
+                      "align.toml: transforms and time offset; default: identity");
+  command->add_option("--along", arguments->along, "axes along which the error is constant")
       ->check(CLI::IsMember({"tool", "camera"}))
       ->capture_default_str();
   add_output_options(*command, arguments->output);

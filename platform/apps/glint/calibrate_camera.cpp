@@ -50,7 +50,7 @@ int run_table(const CameraArguments& arguments) {
   finish_calibration(
       arguments.output, figures,
       {{"camera.toml", figures_toml(figures, "glint calibrate camera; pixel centres at + 0.5")},
-       {"camera.svg", residual_plot({"Lens: error by the angle off the axis (number: degrees)",
+       {"camera.svg", residual_plot({"Lens: error against the angle off the axis (number: degrees)",
                                      "error [px]", fit.error_by_angle_px})}});
   return 0;
 }
@@ -111,7 +111,7 @@ int run_images(const CameraArguments& arguments) {
       {{"camera.toml", figures_toml(figures, "glint calibrate camera; pixel centres at + 0.5")},
        {"camera_rays.npy", npy_float32_bytes({shape, ray_table_of(fit.model)})},
        {"camera.svg",
-        residual_plot({"Lens: rms error of a picture", "error [px]", fit.image_rms_px})}});
+        residual_plot({"Lens: rms error of each image", "error [px]", fit.image_rms_px})}});
   return report_losses(failures);
 }
 
@@ -119,29 +119,33 @@ int run_images(const CameraArguments& arguments) {
 
 void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
   CLI::App* command = calibrate.add_subcommand(
-      "camera", "The lens: pictures of a board, or a device's table of rays as a rational lens");
+      "camera", "Calibrate the lens: from images of a target, or from a device's ray table");
   auto arguments = std::make_shared<CameraArguments>();
   command->footer(
-      "Examples:\n  glint calibrate camera --images board/*.png --board 9x6 --spacing-mm 25\n"
+      "Examples:\n"
+      "  glint calibrate camera --images board/*.png --board 9x6 --spacing-mm 25\n"
       "  glint calibrate camera --recording frames --config cell.toml --board 9x6 --spacing-mm 25\n"
       "  glint calibrate camera --ray-table ahat_lut.npy --json lens.json\n"
-      "--recording: the frames' reflectivity; the cell has their size and bits.\n"
-      "From pictures the folder also gets camera_rays.npy, for a cell's camera.ray_table.");
-  command->add_option("--images", arguments->images, "pictures of the board (PNG, PGM)");
+      "--recording: images of reflectivity; the cell has their size and bits.\n"
+      "From images the folder also holds camera_rays.npy, for a cell's camera.ray_table.");
+  command->add_option("--images", arguments->images, "images of the calibration target (PNG, PGM)");
   add_recording_options(*command, arguments->recording, arguments->config);
-  command->add_option("--board", arguments->board, "inner corners or circles, COLUMNSxROWS")
+  command
+      ->add_option("--board", arguments->board,
+                   "inner corners or circles of the target, COLUMNSxROWS")
       ->capture_default_str();
-  command->add_option("--spacing-mm", arguments->spacing_mm, "from corner to corner")
+  command
+      ->add_option("--spacing-mm", arguments->spacing_mm, "distance of adjacent corners or circles")
       ->check(in_range(0.1, 1000.0))
       ->capture_default_str();
-  command->add_option("--pattern", arguments->pattern, "what the board shows")
+  command->add_option("--pattern", arguments->pattern, "pattern of the target")
       ->check(CLI::IsMember({"chessboard", "circles"}))
       ->capture_default_str();
-  command->add_option("--lens", arguments->lens, "the model")
+  command->add_option("--lens", arguments->lens, "lens model")
       ->check(CLI::IsMember({"rational", "brown"}))
       ->capture_default_str();
-  command->add_option("--ray-table", arguments->ray_table, "unit rays, float32 (.npy)");
-  command->add_option("--width", arguments->width, "of the image, where the table is flat")
+  command->add_option("--ray-table", arguments->ray_table, "table of unit rays, float32 (.npy)");
+  command->add_option("--width", arguments->width, "image width of a flat table")
       ->check(in_range(0, 100000));
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] {

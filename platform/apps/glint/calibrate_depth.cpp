@@ -72,7 +72,7 @@ int run_depth(const DepthArguments& arguments) {
   if (arguments.no_brightness) settings.brightness = Brightness::left_out;
   if (!series.brightness && !arguments.no_brightness) {
     throw InputError(series.what +
-                     ": recorded at level blobs, which keeps no brightness, so dim_mm stays open; "
+                     ": recorded at level blobs, without brightness: dim_mm is not observable; "
                      "expected level roi or full, or --no-brightness");
   }
   const ObservationSeries seen = find_tool(series, tool, {});
@@ -85,9 +85,9 @@ int run_depth(const DepthArguments& arguments) {
       arguments.output, figures,
       {{"depth.toml",
         figures_toml(figures,
-                     "glint calibrate depth: a cell takes it by [camera] depth_bias = "
-                     "\"depth.toml\"\nof markers of this kind alone")},
-       {"depth.svg", residual_plot({"Depth: what is left of each marker's range, bias taken off",
+                     "glint calibrate depth: for [camera] depth_bias = \"depth.toml\"\n"
+                     "of a cell, for markers of this kind only")},
+       {"depth.svg", residual_plot({"Depth: residual of each marker's range after the bias",
                                     "distance [mm]", misses_mm, &found.kept})}});
   return report_losses(series.failures);
 }
@@ -96,7 +96,7 @@ int run_depth(const DepthArguments& arguments) {
 
 void add_calibrate_depth(CLI::App& calibrate, int& exit_code) {
   CLI::App* command = calibrate.add_subcommand(
-      "depth", "The bias of a camera's ranges: a tool of known size, near and far, bright and dim");
+      "depth", "Calibrate the range bias: a tool of known size, near and far, bright and dim");
   auto arguments = std::make_shared<DepthArguments>();
   command->footer(
       "Examples:\n"
@@ -106,13 +106,14 @@ void add_calibrate_depth(CLI::App& calibrate, int& exit_code) {
       "blobs.csv: time_s,x_px,y_px,range_m,peak, one unlabelled blob a row; pixel centres at +\n"
       "0.5, ranges along the ray to the marker's surface. Move the tool through all ranges of its\n"
       "use and tilt it to and fro. A recording of level blobs needs --no-brightness.\n"
-      "A cell takes the bias by [camera] depth_bias = \"depth.toml\".");
+      "Entry in a cell: [camera] depth_bias = \"depth.toml\".");
   add_recording_options(*command, arguments->recording, arguments->config);
-  command->add_option("--blobs", arguments->samples, "blobs instead (CSV)");
+  command->add_option("--blobs", arguments->samples,
+                      "table of blobs (CSV), instead of --recording");
   command->add_option("--tool", arguments->tool,
-                      "the tool (.toml, .rom, .ini, or a recorded tool's name), or pen (built in)");
+                      "tool: file (.toml, .rom, .ini), name of a recorded tool, or pen (built in)");
   command->add_flag("--no-brightness", arguments->no_brightness,
-                    "leave dim_mm at 0: the bias by range alone");
+                    "bias by range only: dim_mm stays 0");
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_depth(*arguments); });
 }

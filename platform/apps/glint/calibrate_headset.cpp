@@ -42,7 +42,7 @@ int run_headset(const HeadsetArguments& arguments) {
   finish_calibration(
       arguments.output, figures,
       {{"headset.toml",
-        figures_toml(figures, "glint calibrate headset: its [headset] goes into a cell")}});
+        figures_toml(figures, "glint calibrate headset: copy its [headset] to a cell")}});
   return report_losses(found.failures);
 }
 
@@ -50,15 +50,15 @@ int run_headset(const HeadsetArguments& arguments) {
 
 void add_calibrate_headset(CLI::App& calibrate, int& exit_code) {
   CLI::App* command = calibrate.add_subcommand(
-      "headset", "How far the headset's own localisation wanders: a tool rests, the head moves");
+      "headset", "Estimate the drift of the headset's localisation: a tool rests, the head moves");
   auto arguments = std::make_shared<HeadsetArguments>();
   command->footer(
       "Example:\n"
       "  glint calibrate headset --recording out/look.mcap --tool pen --out out\n"
-      "A minute or more: the tool lies still in view, the head moves as at work. The [headset] of\n"
-      "headset.toml goes into a cell; head_late_ms is only stated.");
+      "A minute or more: the tool rests in view, the head moves as at work. Copy [headset] of\n"
+      "headset.toml to a cell; head_late_ms is for information only.");
   add_recording_options(*command, arguments->recording, arguments->config);
-  command->add_option("--tool", arguments->tool, "that rests; default: the recording's first");
+  command->add_option("--tool", arguments->tool, "tool that rests; default: the recording's first");
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_headset(*arguments); });
 }

@@ -96,8 +96,8 @@ int run_motion(const MotionArguments& arguments) {
   finish_calibration(
       arguments.output, figures,
       {{"motion.toml",
-        figures_toml(figures, "glint calibrate motion: a cell takes it by [motion] file")},
-       {"motion.svg", residual_plot({"Motion: prediction 25 ms ahead, on the part held out",
+        figures_toml(figures, "glint calibrate motion: for [motion] file of a cell")},
+       {"motion.svg", residual_plot({"Motion: prediction 25 ms ahead, on the validation part",
                                      "error [mm]", misses_mm})}});
   return predicts_as_well(found) ? 0 : 1;
 }
@@ -105,35 +105,38 @@ int run_motion(const MotionArguments& arguments) {
 }  // namespace
 
 void add_calibrate_motion(CLI::App& calibrate, int& exit_code) {
-  CLI::App* command = calibrate.add_subcommand(
-      "motion", "How the hand moves: noise and damping of the filter, from recordings");
+  CLI::App* command =
+      calibrate.add_subcommand("motion", "Fit the motion filter's noise and damping to recordings");
   auto arguments = std::make_shared<MotionArguments>();
   command->footer(
       "Example: glint calibrate motion --poses work.tum more.tum --position-sigma-mm 0.5 \\\n"
       "           --rotation-sigma-deg 0.3 --json motion.json\n"
-      "Poses as measured, with the noise an axis that is declared: a minute or more of the work "
-      "to\n"
-      "be done. The last third of each recording is held out: there the setting found stands "
-      "beside\n"
-      "the built-in one; ends with 1 where its prediction is worse by 2 %. A cell takes it by\n"
-      "[motion] file = \"motion.toml\".");
+      "Record measured poses of typical work, a minute or more, and declare their noise an axis.\n"
+      "The last third of each recording validates the fit against the built-in setting. Exit\n"
+      "code 1: the fit predicts worse by 2 %. Entry in a cell: [motion] file = \"motion.toml\".");
   command
-      ->add_option("--poses", arguments->poses,
-                   "recordings: TUM text, EuRoC-like CSV, or a run's .mcap (level blobs or more)")
+      ->add_option(
+          "--poses", arguments->poses,
+          "recordings: TUM text, EuRoC-like CSV, or a run's .mcap (level blobs, roi or full)")
       ->required();
-  command->add_option("--tool", arguments->tool, "of an .mcap: which of its tools");
-  command->add_option("--position-sigma-mm", arguments->position_sigma_mm, "of a pose, an axis")
+  command->add_option("--tool", arguments->tool, "tool of an .mcap");
+  command
+      ->add_option("--position-sigma-mm", arguments->position_sigma_mm,
+                   "standard deviation of a pose an axis")
       ->check(in_range(0.001, 100.0))
       ->capture_default_str();
-  command->add_option("--rotation-sigma-deg", arguments->rotation_sigma_deg, "of a pose, an axis")
+  command
+      ->add_option("--rotation-sigma-deg", arguments->rotation_sigma_deg,
+                   "standard deviation of a pose an axis")
       ->check(in_range(0.001, 30.0))
       ->capture_default_str();
   command
-      ->add_option("--rate-hz", arguments->rate_hz, "the camera's: faster recordings are thinned")
+      ->add_option("--rate-hz", arguments->rate_hz,
+                   "frame rate of the camera; faster recordings are thinned")
       ->check(in_range(1.0, 1000.0))
       ->capture_default_str();
   command->add_flag("--add-noise", arguments->add_noise,
-                    "the recordings are the truth: add the declared noise to them");
+                    "recordings are ground truth: add the declared noise");
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_motion(*arguments); });
 }

@@ -130,9 +130,8 @@ int run_noise(const NoiseArguments& arguments) {
   const NoiseCalibration found = calibrate_noise(series.poses, series.what);
   const Figures figures = figures_for(series, found);
   const std::string use =
-      series.cell
-          ? "glint calibrate noise: a cell takes it by [camera] uncertainty = \"noise.toml\""
-          : "glint calibrate noise";
+      series.cell ? "glint calibrate noise: for [camera] uncertainty = \"noise.toml\" of a cell"
+                  : "glint calibrate noise";
   finish_calibration(
       arguments.output, figures,
       {{"noise.toml", figures_toml(figures, use)},
@@ -146,19 +145,19 @@ int run_noise(const NoiseArguments& arguments) {
 void add_calibrate_noise(CLI::App& calibrate, int& exit_code) {
   CLI::App* command = calibrate.add_subcommand(
       "noise",
-      "White and correlated noise of poses, by their Allan deviation: tool and camera rest");
+      "Estimate white and correlated noise from the Allan deviation: tool and camera rest");
   auto arguments = std::make_shared<NoiseArguments>();
   command->footer(
       "Examples:\n"
       "  glint calibrate noise --recording out/rest.mcap --tool pen --out out\n"
       "  glint calibrate noise --poses tool_a.tum --relative-to tool_b.tum --json noise.json\n"
-      "Two minutes or more. From frames the folder's noise.toml also states each marker's errors:\n"
-      "a cell takes them by [camera] uncertainty = \"noise.toml\".");
+      "Record two minutes or more. From frames, noise.toml also holds each marker's errors;\n"
+      "entry in a cell: [camera] uncertainty = \"noise.toml\".");
   command->add_option("--poses", arguments->poses, "poses of a tool at rest: TUM text or CSV");
   command->add_option("--relative-to", arguments->relative_to,
-                      "poses of a body beside it, by the same tracker: its drift cancels");
+                      "poses of a body beside the tool, from the same tracker: its drift cancels");
   add_recording_options(*command, arguments->recording, arguments->config);
-  command->add_option("--tool", arguments->tool, "of the recording's tools; default: the first");
+  command->add_option("--tool", arguments->tool, "tool of the recording; default: the first");
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_noise(*arguments); });
 }

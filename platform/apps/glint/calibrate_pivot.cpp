@@ -81,8 +81,8 @@ int run_pivot(const PivotArguments& arguments) {
 }  // namespace
 
 void add_calibrate_pivot(CLI::App& calibrate, int& exit_code) {
-  CLI::App* command =
-      calibrate.add_subcommand("pivot", "The tip: stand it in a dent, tilt the tool to all sides");
+  CLI::App* command = calibrate.add_subcommand(
+      "pivot", "Calibrate the tip: it stands in a dent, the tool tilts to all sides");
   auto arguments = std::make_shared<PivotArguments>();
   command->footer(
       "Examples:\n"
@@ -90,19 +90,20 @@ void add_calibrate_pivot(CLI::App& calibrate, int& exit_code) {
       "  glint calibrate pivot --points markers.csv --tool probe.toml --json pivot.json\n"
       "  glint calibrate pivot --recording frames --config cell.toml --tool probe.toml\n"
       "  glint calibrate pivot --recording frames --config cell.toml --frame camera --out out\n"
-      "--recording: the poses are in the world where most frames have a head pose, else in the\n"
-      "camera's frame, which then must not move; `frame` in the table. Of a headset on a stand\n"
-      "--frame camera: its own drift then does not count.\n"
-      "With --tool the folder also gets NAME.toml, the tool with its new tip, for a cell's tools.\n"
-      "Ends with 1 where --sigma-mm is not reached.");
+      "--recording: poses are in the world if most frames have a head pose, else in the camera's\n"
+      "frame, which must not move (`frame` in the table). For a headset on a stand use --frame\n"
+      "camera: its drift then has no effect.\n"
+      "With --tool the folder also holds NAME.toml, the tool with its new tip, for a cell's "
+      "tools.\n"
+      "Exit code 1: --sigma-mm is not reached.");
   add_pose_options(*command, arguments->source);
   add_recording_options(*command, arguments->source.recording, arguments->source.cell_file);
-  command->add_option("--frame", arguments->frame, "of the poses of --recording")
+  command->add_option("--frame", arguments->frame, "frame of the poses of --recording")
       ->check(CLI::IsMember({"by_head", "camera", "world"}))
       ->capture_default_str();
   command
       ->add_option("--sigma-mm", arguments->sigma_mm,
-                   "stop as soon as the tip is known this well; 0: use every pose")
+                   "standard deviation of the tip at which to stop; 0: use every pose")
       ->check(in_range(0.0, 1000.0));
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_pivot(*arguments); });

@@ -64,7 +64,7 @@ int run_spin(const SpinArguments& arguments) {
   std::vector<CalibrationFile> files{
       {"spin.toml", figures_toml(figures, "glint calibrate spin")},
       {"spin.svg",
-       residual_plot({"Spin: how far the axis is off", "angle [deg]", wobble_deg, &result.kept})}};
+       residual_plot({"Spin: angle error of the axis", "angle [deg]", wobble_deg, &result.kept})}};
   if (series.tool) {
     const std::string from = "z along the axis by glint calibrate spin from " + series.what +
                              ", sigma " + format_degrees(result.axis_sigma_rad);
@@ -79,16 +79,17 @@ int run_spin(const SpinArguments& arguments) {
 
 void add_calibrate_spin(CLI::App& calibrate, int& exit_code) {
   CLI::App* command =
-      calibrate.add_subcommand("spin", "The axis: roll the tool about it, to and fro");
+      calibrate.add_subcommand("spin", "Calibrate the axis: the tool rolls about it, to and fro");
   auto arguments = std::make_shared<SpinArguments>();
   command->footer(
       "Example: glint calibrate spin --poses spin.tum --sigma-deg 0.05 --json spin.json\n"
-      "With --tool the folder also gets NAME.toml, the tool turned about its tip so that its z is\n"
-      "the axis, from the tip to the markers. Ends with 1 where --sigma-deg is not reached.");
+      "With --tool the folder also holds NAME.toml, the tool rotated about its tip: z is the "
+      "axis,\n"
+      "from the tip to the markers. Exit code 1: --sigma-deg is not reached.");
   add_pose_options(*command, arguments->source);
   command
       ->add_option("--sigma-deg", arguments->sigma_deg,
-                   "stop as soon as the axis is known this well; 0: use every pose")
+                   "standard deviation of the axis at which to stop; 0: use every pose")
       ->check(in_range(0.0, 90.0));
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_spin(*arguments); });

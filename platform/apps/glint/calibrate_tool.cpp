@@ -94,8 +94,8 @@ int run_tool(const ToolArguments& arguments) {
   for (const double residual : found.residuals_m) residuals_mm.push_back(1e3 * residual);
   const std::string from =
       "by glint calibrate tool from " + source +
-      (settings.drawn ? ": the tip is where it was drawn (pivot)"
-                      : ": about the markers' middle; the tip is not known yet (pivot)");
+      (settings.drawn ? ": tip as in the drawing (next: pivot)"
+                      : ": origin at the markers' centroid, no tip (next: pivot)");
   finish_calibration(
       arguments.output, figures_for(arguments, found),
       {{file_name_of(tool) + ".toml", tool_toml_text(tool, from)},
@@ -108,28 +108,29 @@ int run_tool(const ToolArguments& arguments) {
 
 void add_calibrate_tool(CLI::App& calibrate, int& exit_code) {
   CLI::App* command = calibrate.add_subcommand(
-      "tool", "The markers: about 300 frames of the tool alone, turned to all sides");
+      "tool", "Calibrate the markers: about 300 frames of one tool, turned to all sides");
   auto arguments = std::make_shared<ToolArguments>();
   command->footer(
       "Examples:\n"
       "  glint calibrate tool --points markers.csv --name probe --longest-mm 88 --out out\n"
       "  glint calibrate tool --recording frames --config cell.toml --radius-mm 6 --name probe\n"
       "  glint calibrate tool --recording frames --config cell.toml --like pen.toml\n"
-      "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row; some may be missing, strays\n"
-      "may be among them. --recording: all blobs with a range, in the camera's frame; --radius-mm\n"
-      "and --shape are then what their centres lie behind the surface by. --like: a tool that was\n"
-      "drawn; its frame, tip, order of markers and, without --longest-mm, its size hold on. The\n"
-      "folder gets NAME.toml, for a cell's tools, and a plot.");
+      "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row; missing markers and\n"
+      "strays are allowed. --recording: all blobs with a range, in the camera's frame; "
+      "--radius-mm\n"
+      "and --shape give the distance of a centre from the surface. --like: the drawing gives the\n"
+      "frame, the tip, the order of markers and, without --longest-mm, the size. The folder holds\n"
+      "NAME.toml, for a cell's tools, and a plot.");
   command->add_option("--points", arguments->points, "marker positions (CSV)");
   add_recording_options(*command, arguments->recording, arguments->config);
   CLI::Option* like = command->add_option(
-      "--like", arguments->like, "the tool as it was drawn (.toml, .rom, .ini), or pen (built in)");
-  command->add_option("--name", arguments->name, "of the tool")
+      "--like", arguments->like, "drawing of the tool: file (.toml, .rom, .ini) or pen (built in)");
+  command->add_option("--name", arguments->name, "name of the tool")
       ->excludes(like)
       ->capture_default_str();
   command
       ->add_option("--longest-mm", arguments->longest_side_mm,
-                   "the known distance of the two markers farthest apart; 0: as measured")
+                   "known distance of the two markers farthest apart; 0: as measured")
       ->check(in_range(0.0, 2000.0));
   command
       ->add_option("--longest-sigma-mm", arguments->longest_sigma_mm,
@@ -138,14 +139,14 @@ void add_calibrate_tool(CLI::App& calibrate, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--noise-mm", arguments->noise_mm,
-                   "of a measured marker, an axis, roughly; it is found anew")
+                   "rough standard deviation of a marker an axis; it is estimated")
       ->check(in_range(0.01, 20.0))
       ->capture_default_str();
-  command->add_option("--radius-mm", arguments->radius_mm, "of a marker, for the tool file")
+  command->add_option("--radius-mm", arguments->radius_mm, "radius of a marker in the tool file")
       ->check(in_range(0.0, 100.0))
       ->excludes(like)
       ->capture_default_str();
-  command->add_option("--shape", arguments->shape, "of a marker, for the tool file")
+  command->add_option("--shape", arguments->shape, "shape of a marker in the tool file")
       ->check(CLI::IsMember({"sphere", "disc"}))
       ->excludes(like)
       ->capture_default_str();

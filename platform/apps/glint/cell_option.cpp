@@ -23,11 +23,11 @@ void add_cell_check(CLI::App& app) {
   if (!commands.empty() || app.get_option_no_throw("--config") != nullptr) return;
   const auto check = [&app](const std::string& file) {
     (void)load_cell(file);
-    std::fprintf(stderr, "note: %s: checked; `%s` uses no setting of a cell\n",
-                 printable(file).c_str(), app.get_name().c_str());
+    std::fprintf(stderr, "note: %s: checked; `%s` uses no cell setting\n", printable(file).c_str(),
+                 app.get_name().c_str());
   };
   app.add_option_function<std::string>(k_cell_option, check,
-                                       "cell file: checked, not used by this command")
+                                       "cell file; only checked by this command")
       ->type_name("FILE");
 }
 

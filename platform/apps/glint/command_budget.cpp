@@ -4,7 +4,8 @@
 namespace glint {
 
 void add_budget(CLI::App& app, int& exit_code) {
-  CLI::App* budget = app.add_subcommand("budget", "how late an output can be, before it runs");
+  CLI::App* budget =
+      app.add_subcommand("budget", "Measure costs; compute, check and report latency bounds");
   budget->require_subcommand(1);
   budget->footer("Example: glint budget schedule --board x86-64-emulated --out plan.toml");
   add_budget_measure(*budget, exit_code);

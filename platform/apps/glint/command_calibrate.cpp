@@ -14,7 +14,7 @@ namespace glint {
 void add_output_options(CLI::App& command, CalibrationOutput& output) {
   command.add_option("--out", output.out, "folder of the TOML file and the plot")
       ->capture_default_str();
-  command.add_option("--json", output.json, "write the figures here");
+  command.add_option("--json", output.json, "file of the figures");
 }
 
 void add_pose_options(CLI::App& command, PoseSource& source) {
@@ -22,15 +22,13 @@ void add_pose_options(CLI::App& command, PoseSource& source) {
                      "poses of the tool: TUM text, EuRoC-like CSV, or a run's .mcap");
   command.add_option("--points", source.points,
                      "marker positions instead: CSV time_s,x_m,y_m,z_m, unlabelled");
-  command.add_option("--tool", source.tool, "the tool (.toml, .rom, .ini), or pen (built in)");
-  command.add_flag("--of-tip", source.of_tip,
-                   "the poses are of the tool's tip, as in a run's tip.tum");
+  command.add_option("--tool", source.tool, "tool: file (.toml, .rom, .ini) or pen (built in)");
+  command.add_flag("--of-tip", source.of_tip, "poses of the tool's tip, as in a run's tip.tum");
 }
 
 void add_recording_options(CLI::App& command, std::string& recording, std::string& cell_file) {
   command.add_option("--recording", recording,
-                     "recorded frames instead: a recording, a bag, a folder or a headset's "
-                     "capture, as `glint track` reads them");
+                     "recorded frames (any kind that `glint track` reads), instead");
   add_cell_option(command, cell_file,
                   "cell file of the camera; default: the recording's own, else the built-in cell");
 }
@@ -49,7 +47,7 @@ void finish_calibration(const CalibrationOutput& output, const Figures& figures,
 void add_calibrate(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "calibrate",
-      "Find a tool's tip, axis and markers, a lens, biases, a hand's motion, from measurements");
+      "Calibrate a tool's tip, axis and markers, the lens, biases and the motion filter");
   command->require_subcommand(1);
   command->footer("Example: glint calibrate pivot --poses tip.tum --of-tip --tool pen.toml");
   add_calibrate_pivot(*command, exit_code);

@@ -34,11 +34,11 @@ struct FrameExportKind {
 
 constexpr FrameExportKind k_points{
     "points",
-    "Every marker position of each frame, unlabelled, in the camera's frame",
+    "All marker positions of each frame, unlabelled, in the camera's frame",
     "out/points.csv",
-    "time_s,x_m,y_m,z_m, a marker's centre a row: what `glint replay --points` and `glint\n"
-    "calibrate tool|pivot --points` read. The whole frame is searched; the centre lies behind the\n"
-    "measured surface as one of --tool's markers does.",
+    "time_s,x_m,y_m,z_m, one marker's centre a row, for `glint replay --points` and `glint\n"
+    "calibrate tool|pivot --points`. The whole frame is searched. The centre lies behind the\n"
+    "measured surface by the radius of --tool's markers.",
     false,
     false};
 constexpr FrameExportKind k_tum{
@@ -64,7 +64,7 @@ constexpr FrameExportKind k_truth{
     "The true poses of one tool in simulated frames as TUM text, a row for each frame",
     "out/truth.tum",
     "t x y z qx qy qz qw: T_world_tool, or T_camera_tool, at the frame's stamp. SOURCE: a\n"
-    "recording of `glint simulate`, or of `glint run` on simulated frames.",
+    "recording of `glint simulate`, or of `glint run` with simulated frames.",
     true,
     true};
 
@@ -143,28 +143,26 @@ void add_kind(CLI::App& parent, const FrameExportKind& kind, int& exit_code) {
                   std::filesystem::path(kind.file).filename().string() + "\n" + kind.columns);
   command
       ->add_option("SOURCE", arguments->source,
-                   "a recording, a bag, a folder or a headset's capture, as `glint track` reads "
-                   "them")
+                   "recorded frames (any kind that `glint track` reads)")
       ->required();
   command->add_option("--tool", arguments->tool,
-                      "one of the cell's tools, a built-in one or a tool file; default: the "
-                      "cell's first" +
-                          std::string(kind.has_origin && !kind.has_frame ? ", here all" : ""));
-  command->add_option("--out", arguments->out, "file to write")->capture_default_str();
+                      "tool of the cell, built-in tool or tool file; default: the cell's first" +
+                          std::string(kind.has_origin && !kind.has_frame ? "; here all" : ""));
+  command->add_option("--out", arguments->out, "output file")->capture_default_str();
   if (kind.has_frame) {
-    command->add_option("--frame", arguments->frame, "that the poses are in")
+    command->add_option("--frame", arguments->frame, "frame of the poses")
         ->check(CLI::IsMember({"world", "camera"}))
         ->capture_default_str();
   }
   if (kind.has_origin) {
     command->add_flag("--of-tip", arguments->of_tip,
-                      "the poses' origin is the tool's tip, as in a run's tip.tum");
+                      "origin of the poses at the tool's tip, as in a run's tip.tum");
   }
   command->add_option("--kind", arguments->kind,
-                      "of SOURCE: " + recorded_kinds() + "; default: by what is there");
+                      "kind of SOURCE: " + recorded_kinds() + "; default: detected");
   add_cell_option(*command, arguments->config,
                   "cell file; default: the recording's own, else the built-in cell");
-  command->add_option("--json", arguments->json, "write the counts here");
+  command->add_option("--json", arguments->json, "file of the counts");
   command->callback(
       [arguments, &kind, &exit_code] { exit_code = run_frame_export(kind, *arguments); });
 }
@@ -172,8 +170,8 @@ void add_kind(CLI::App& parent, const FrameExportKind& kind, int& exit_code) {
 }  // namespace
 
 void add_export(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("export", "Marker positions, poses and truth of recorded frames, as text");
+  CLI::App* command = app.add_subcommand(
+      "export", "Export marker positions, poses and truth of recorded frames as text");
   command->require_subcommand(1);
   command->footer("Example: glint export tum out/run.mcap --tool pen --out pen.tum");
   for (const FrameExportKind* kind : {&k_points, &k_truth, &k_tum, &k_csv}) {

@@ -201,9 +201,9 @@ Inspected inspected_recording(const InspectArguments& arguments) {
     inspected.at_that_time = CheckRow{
         "frame at that time", fresh, text,
         fresh ? ""
-              : "see the source's gaps; " +
+              : "check the source for gaps; " +
                     (after_s > 0 ? "the next frame arrives at " + std::to_string(after_s) + " s"
-                                 : std::string("it is the last one"))};
+                                 : std::string("it is the last frame"))};
   }
   return inspected;
 }
@@ -291,30 +291,33 @@ int inspect(const InspectArguments& arguments) {
 
 void add_inspect(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "inspect", "What Glint sees in one frame, and why a tool is or is not tracked");
+      "inspect", "Show one frame's blobs and markers, and each check of the tracking");
   auto arguments = std::make_shared<InspectArguments>();
   command->footer(
-      "Examples:\n  glint inspect --recording out/run.mcap --at 12.3\n"
+      "Examples:\n"
+      "  glint inspect --recording out/run.mcap --at 12.3\n"
       "  glint inspect --recording bag --config my_cell.toml --frame 512\n"
       "  glint inspect --frame frame.bin --layout adi --tool pen --json seen.json\n"
-      "A recording is tracked from its beginning up to the frame. The picture goes to --out.");
+      "A recording is tracked from its start to the frame. --out holds the image.");
   command->add_option("--frame", arguments->frame,
-                      "frame file; with --recording the frame's number, from 0");
+                      "frame file; with --recording: frame number, from 0");
   command->add_option("--recording", arguments->recording,
-                      "recorded frames of any kind that `glint track` reads");
-  command->add_option("--at", arguments->at_s, "with --recording: time in the session, s")
+                      "recorded frames (any kind that `glint track` reads)");
+  command->add_option("--at", arguments->at_s, "with --recording: time since its start, s")
       ->check(in_range(0.0, 1e6));
   command->add_option("--kind", arguments->kind,
-                      "of the recording: " + recorded_kinds() + "; default: by what is there");
+                      "kind of the recording: " + recorded_kinds() + "; default: detected");
   command->add_option("--layout", arguments->layout,
                       "adi: depth u16, confidence u8, brightness u16 planes; ahat: depth and "
                       "brightness u16 planes; pgm: NAME.pgm beside NAME_ab.pgm");
   command->add_option("--tool", arguments->tools, "tool files, or pen (built in)");
   add_cell_option(*command, arguments->config, "cell file with camera and tools");
-  command->add_option("--threshold", arguments->threshold, "reflectivity of a marker, raw counts")
+  command
+      ->add_option("--threshold", arguments->threshold,
+                   "least reflectivity of a marker, raw counts")
       ->check(in_range(1, 65534));
-  command->add_option("--out", arguments->out, "folder of the picture")->capture_default_str();
-  command->add_option("--json", arguments->json, "write what was seen here");
+  command->add_option("--out", arguments->out, "folder of the image")->capture_default_str();
+  command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] {
     const bool recorded = !arguments->recording.empty();
     const bool by_time = arguments->at_s >= 0;

@@ -45,7 +45,7 @@ nlohmann::ordered_json planes_json(const PlaneSearch& planes) {
 void print_table(const MapCounts& counts, const PlaneSearch& planes) {
   std::printf("%-22s %12lld\n", "measured points", static_cast<long long>(counts.measured));
   if (counts.left_out > 0) {
-    std::printf("%-22s %12lld\n", "in pen and hands", static_cast<long long>(counts.left_out));
+    std::printf("%-22s %12lld\n", "on pen and hands", static_cast<long long>(counts.left_out));
   }
   std::printf("%-22s %12d\n", "voxels", counts.voxels);
   std::printf("%-22s %12d\n", "without outliers", counts.kept);
@@ -66,8 +66,9 @@ void print_table(const OccupancyCounts& counts) {
   const auto notice = [](std::int64_t count, const char* what) {
     if (count > 0) std::printf("notice  %lld %s\n", static_cast<long long>(count), what);
   };
-  notice(counts.out_of_range, "points left out of the octomap: beyond its range");
-  notice(counts.rays_left_out + counts.points_left_out, "rays and points left out: octomap full");
+  notice(counts.out_of_range, "points outside the octomap's range, left out");
+  notice(counts.rays_left_out + counts.points_left_out,
+         "rays and points left out: octomap is full");
 }
 
 // Returns free space from the pixels of the mapped frames, and the map's points as surface.
@@ -92,7 +93,7 @@ void publish(const MapArguments& arguments, const HostCloud& map, const Occupanc
   MapPublisher publisher(arguments.publish.settings);
   const Time now = publishing_time();
   if (const std::size_t left = publisher.publish_cloud(map.points, map.normals, now); left > 0) {
-    std::printf("notice  %zu points not published: too many; a larger --voxel-mm\n", left);
+    std::printf("notice  %zu points not published: too many; set a larger --voxel-mm\n", left);
   }
   if (occupancy != nullptr) {
     publisher.publish_octomap(occupancy->message_bytes(), occupancy->resolution_m(), now);
@@ -116,7 +117,7 @@ int make_map(const MapArguments& arguments) {
   progress.clear();
   chain.finish();
   if (chain.map().count == 0) {
-    throw InputError(arguments.data + ": nothing is left of " +
+    throw InputError(arguments.data + ": no point is left of " +
                      std::to_string(chain.counts().measured) +
                      " measured points; expected surfaces with 9 points within 5 cm of each");
   }
@@ -159,35 +160,37 @@ int make_map(const MapArguments& arguments) {
 
 void add_map(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "map", "Make a smooth cloud with planes of depth pictures and their poses");
+      "map", "Build a smooth point cloud with planes from depth images and poses");
   auto arguments = std::make_shared<MapArguments>();
   command->footer(
-      "Examples:\n  glint map --data pictures --out out --json out/map.json\n"
+      "Examples:\n"
+      "  glint map --data pictures --out out --json out/map.json\n"
       "  glint map --data pictures --out out --octomap out/map.bt --resolution 0.02\n"
-      "The folder holds NAME.depth.png (16 bits, mm) or NAME.depth.npy (float32, m), beside each\n"
-      "NAME.pose.txt (T_world_camera, 16 numbers), and camera-intrinsics.txt (9 numbers).\n"
-      "NAME.left_out.txt, where it is there: pen and hands as lines of x y z  x y z  radius.\n"
-      "Written: map.ply, map.pcd (metres, with normals) and map.png.\n"
+      "The folder holds camera-intrinsics.txt (9 numbers), and for each image NAME.depth.png\n"
+      "(16 bits, mm) or NAME.depth.npy (float32, m), and NAME.pose.txt (T_world_camera, 16\n"
+      "numbers). Optional NAME.left_out.txt: pen and hands as lines of x y z  x y z  radius.\n"
+      "Files: map.ply, map.pcd (metres, with normals) and map.png.\n"
       "--dds: rt/glint/map_points and, with --octomap, rt/glint/octomap, in frame hmd_world.");
-  command->add_option("--data", arguments->data, "folder of the pictures")->required();
+  command->add_option("--data", arguments->data, "folder of the depth images")->required();
   command->add_option("--voxel-mm", arguments->voxel_mm, "side of a voxel")
       ->check(in_range(1.0, 100.0))
       ->capture_default_str();
-  command->add_option("--depth-max", arguments->depth_max_m, "metres; what is further is left out")
+  command->add_option("--depth-max", arguments->depth_max_m, "largest depth, m")
       ->check(in_range(0.2, 20.0))
       ->capture_default_str();
-  command->add_option("--stride", arguments->stride, "every n-th pixel of every n-th row")
+  command->add_option("--stride", arguments->stride, "every Nth pixel of every Nth row")
       ->check(in_range(1, 64))
       ->capture_default_str();
   command->add_flag("--keep-uneven", arguments->keep_uneven, "do not move points onto planes");
   command->add_option("--octomap", arguments->octomap,
-                      "write what is occupied, free and unknown here (.bt)");
-  command->add_option("--resolution", arguments->occupancy.resolution_m, "metres; of the octomap")
+                      "octomap file to write (.bt): occupied, free and unknown space");
+  command
+      ->add_option("--resolution", arguments->occupancy.resolution_m, "side of an octomap voxel, m")
       ->check(in_range(0.002, 1.0))
       ->capture_default_str();
   add_publish_options(*command, arguments->publish);
-  command->add_option("--out", arguments->out, "folder of the files")->capture_default_str();
-  command->add_option("--json", arguments->json, "write the figures here");
+  command->add_option("--out", arguments->out, "output folder")->capture_default_str();
+  command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] { exit_code = make_map(*arguments); });
 }
 

@@ -49,13 +49,13 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
                 element.kind == PathKind::waypoint ? "waypoint" : "stroke", element.points.size(),
                 static_cast<double>(first.time.nanoseconds) * 1e-9, at.x(), at.y(), at.z());
   }
-  std::printf("poses while held %lld, taken %lld; largest sigma an axis %.2f mm\n",
+  std::printf("poses while held %lld, used %lld; largest sigma an axis %.2f mm\n",
               static_cast<long long>(counts.poses), static_cast<long long>(counts.poses_accepted),
               1e3 * largest_sigma_m(drawn.path));
   if (spacing_m < 2 * largest_sigma_m(drawn.path)) {
     std::printf(
-        "notice  points are %.2f mm apart, less than twice their sigma: some follow the "
-        "noise, not the hand; a wider --spacing, or a reference body in view\n",
+        "notice  points are %.2f mm apart, less than twice their sigma: noise dominates some; set "
+        "a wider --spacing, or keep a reference body in view\n",
         1e3 * spacing_m);
   }
   const auto notice = [](std::int64_t count, const char* what) {
@@ -66,11 +66,11 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
   notice(counts.not_measured, "poses left out: not measured");
   notice(counts.not_in_robot, "poses left out: not in the robot's frame");
   notice(counts.not_usable, "poses left out: out of order or a jump");
-  notice(counts.gaps, "strokes ended where the pen was lost; the next pose began another");
+  notice(counts.gaps, "strokes ended by a lost pen; the next pose begins another");
   notice(counts.presses_without_effect,
-         "presses without effect: no pose, or nothing to delete or undo");
+         "button presses without effect: no pose, or nothing to delete or undo");
   notice(counts.points_over_capacity, "points left out: more than --points-max");
-  notice(counts.strokes_over_capacity, "elements left out: more than there is room for");
+  notice(counts.strokes_over_capacity, "elements left out: more than the capacity");
 }
 
 nlohmann::ordered_json figures(const RecordedPath& drawn) {
@@ -141,31 +141,33 @@ void add_length(CLI::App* command, const std::string& name, double& metres, cons
 
 void add_path(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "path", "Waypoints and strokes that were drawn with the pen, as a table and a robot program");
+      "path", "Convert drawn waypoints and strokes to a table and a robot program");
   auto arguments = std::make_shared<PathArguments>();
   command->footer(
-      "Examples:\n  glint path out/run.mcap --csv path.csv --urscript path.script\n"
+      "Examples:\n"
+      "  glint path out/run.mcap --csv path.csv --urscript path.script\n"
       "  glint path out/run.mcap --button 1.0..2.5,3.0..4.2 --spacing 2mm --csv path.csv\n"
-      "A button held draws a stroke, clicked it sets a waypoint. Reachability is not checked.\n"
+      "A held button draws a stroke, a click sets a waypoint. Reachability is not checked.\n"
       "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
-  command->add_option("recording", arguments->recording, "a recording of `glint run`")->required();
-  command->add_option("--tool", arguments->options.tool, "the pen's name; default: the first tool");
+  command->add_option("recording", arguments->recording, "recording of `glint run`")->required();
+  command->add_option("--tool", arguments->options.tool,
+                      "name of the pen; default: the first tool");
   command->add_option("--button", arguments->button,
-                      "when it was held, in place of what was recorded: FROM..TO in seconds, "
-                      "several with commas");
+                      "intervals with the button held, FROM..TO in seconds, separated by commas; "
+                      "default: the recorded ones");
   CaptureSettings& capture = arguments->options.capture;
-  add_length(command, "--spacing", capture.stroke.spacing_m, "from point to point of a stroke",
+  add_length(command, "--spacing", capture.stroke.spacing_m, "distance between points of a stroke",
              1e-4, 0.1);
-  command->add_option("--points-max", capture.points_max, "room for so many points")
+  command->add_option("--points-max", capture.points_max, "capacity in points")
       ->check(in_range(1, 1 << 22))
       ->capture_default_str();
-  command->add_option("--csv", arguments->csv, "write the points and their covariances here");
-  command->add_option("--urscript", arguments->urscript, "write the robot's program here");
+  command->add_option("--csv", arguments->csv, "CSV file of the points and their covariances");
+  command->add_option("--urscript", arguments->urscript, "file of the robot program");
   UrScriptSettings& script = arguments->script;
-  command->add_option("--stroke-speed", script.stroke_m_s, "m/s along strokes")
+  command->add_option("--stroke-speed", script.stroke_m_s, "speed along strokes, m/s")
       ->check(in_range(1e-3, 2.0))
       ->capture_default_str();
-  command->add_option("--travel-speed", script.travel_m_s, "m/s to waypoints and strokes")
+  command->add_option("--travel-speed", script.travel_m_s, "speed to waypoints and strokes, m/s")
       ->check(in_range(1e-3, 2.0))
       ->capture_default_str();
   command->add_option("--acceleration", script.acceleration_m_s2, "m/s^2")
@@ -174,11 +176,11 @@ void add_path(CLI::App& app, int& exit_code) {
   add_length(command, "--blend", script.blend_m, "largest blend radius", 0, 0.1);
   add_publish_options(*command, arguments->publish);
   command->add_flag("--allow-truncated", arguments->options.tolerance.truncated,
-                    "read a file that was cut short or damaged but for what is not whole, and "
-                    "count what is missing: exit code 1");
+                    "read the undamaged records of a truncated or damaged file, count the missing "
+                    "ones; exit code 1");
   command->add_flag("--allow-incomplete", arguments->options.tolerance.incomplete,
-                    "read a recording that dropped something or ended early");
-  command->add_option("--json", arguments->json, "write the figures here");
+                    "read a recording with dropped messages or an early end");
+  command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] { exit_code = make_path(*arguments); });
 }
 

@@ -49,8 +49,7 @@ int run_reference(ReferenceArguments arguments) {
 }  // namespace
 
 void add_reference(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("reference", "Where a robot stands, from depth pictures of it");
+  CLI::App* command = app.add_subcommand("reference", "Find the robot's base in depth images");
   auto arguments = std::make_shared<ReferenceArguments>();
   RobotFiles& robot = arguments->robot;
   SceneFiles& scene = arguments->scene;
@@ -61,48 +60,48 @@ void add_reference(CLI::App& app, int& exit_code) {
       "    --depth a.npy b.npy --joints a.txt b.txt --seed 0.4,0.2,1.2,-1.6,0.1,0.8 --json r.json\n"
       "  glint reference --listen 60 --package-dir meshes --camera camera_info.yaml --depth a.npy\n"
       "Exit: 0 accepted, 1 ambiguous or refused, 2 bad use or input, 3 no such interface.");
-  auto* const urdf = command->add_option("--urdf", robot.urdf, "the robot's description");
-  command->add_option("--model", arguments->model, "in its place: what --export-model wrote")
+  auto* const urdf = command->add_option("--urdf", robot.urdf, "URDF file of the robot");
+  command
+      ->add_option("--model", arguments->model, "file written by --export-model, instead of --urdf")
       ->excludes(urdf);
   command->add_option("--package-dir", robot.package_dirs,
-                      "where package:// leads: folders, or NAME=FOLDER");
+                      "folders of package:// paths: FOLDER or NAME=FOLDER");
   command->add_option("--joints", scene.joints,
-                      "joint positions, a file for each depth picture: .npy, or text");
+                      "joint positions, one file for each depth image: .npy or text");
   command->add_option(
       "--depth", scene.depth,
-      "depth: pictures .npy (m), .png (16 bit, mm); clouds .pcd, .ply in the camera's frame");
+      "depth images .npy (m), .png (16 bit, mm), or clouds .pcd, .ply in the camera's frame");
   command->add_option("--camera", scene.camera, "ROS camera_info, YAML");
-  command->add_option("--mask", scene.masks, "the robot's pixels, a file for each depth");
+  command->add_option("--mask", scene.masks,
+                      "masks of the robot's pixels, one file for each depth image");
   command
       ->add_option("--seed", arguments->initial_guess,
-                   "x,y,z,roll,pitch,yaw of T_camera_base: metres, radians, fixed axes")
+                   "initial T_camera_base: x,y,z,roll,pitch,yaw in metres and radians, fixed axes")
       ->delimiter(',')
       ->expected(6);
   command
       ->add_option("--search-range", arguments->range,
-                   "M,DEG  largest error of each coordinate and each turn of the rough pose "
-                   "(0.4,40)")
+                   "M,DEG  largest error of each coordinate and angle of the initial pose (0.4,40)")
       ->delimiter(',')
       ->expected(2);
   command
       ->add_option("--depth-bias-mm", arguments->depth_bias_mm,
-                   "standard deviation of the depth error that a whole picture shares")
+                   "standard deviation of the depth error common to one image")
       ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   command
       ->add_option("--listen", arguments->listen_s,
-                   "hear over DDS, for at most so many seconds, what is not given: the robot's "
-                   "description (/robot_description), joint positions for every picture "
-                   "(/joint_states), T_camera_base (/initialpose)")
+                   "seconds to wait for missing inputs over DDS: /robot_description, /joint_states "
+                   "(for every image), /initialpose (T_camera_base)")
       ->check(in_range(0.1, 86400.0));
   add_network_options(*command, arguments->network);
-  command->add_option("--export-model", arguments->export_file,
-                      "write joints and points of the links' surfaces here, as PLY: what a board "
-                      "reads in place of URDF and meshes");
-  command->add_option("--points", arguments->points, "how many points that has")
+  command->add_option(
+      "--export-model", arguments->export_file,
+      "PLY file of joints and surface points; a board reads it instead of URDF and meshes");
+  command->add_option("--points", arguments->points, "number of points of --export-model")
       ->capture_default_str();
-  command->add_flag("--visual", arguments->visual, "visual meshes in place of collision meshes");
-  command->add_option("--json", arguments->json, "write the figures here");
+  command->add_flag("--visual", arguments->visual, "visual meshes instead of collision meshes");
+  command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] { exit_code = run_reference(*arguments); });
 }
 

@@ -42,10 +42,13 @@ int replay_recording(const ReplayArguments& arguments) {
       static_cast<long long>(result.records_compared), static_cast<long long>(result.mismatches));
   const bool lost = result.losses.any();
   if (lost) std::printf("missing          %s\n", text_of(result.losses).c_str());
-  std::printf("output_sha256    %s\nthe run's own    %s  %s%s\n", result.output_sha256.c_str(),
-              result.recorded_sha256.empty() ? "(none)" : printable(result.recorded_sha256).c_str(),
-              result.agrees() ? "equal" : "DIFFERENT",
-              lost && result.agrees() ? " as far as records could be compared" : "");
+  std::printf(
+      "output_sha256    %s\n"
+      "recorded sha256  %s  %s%s\n",
+      result.output_sha256.c_str(),
+      result.recorded_sha256.empty() ? "(none)" : printable(result.recorded_sha256).c_str(),
+      result.agrees() ? "equal" : "DIFFERENT",
+      lost && result.agrees() ? " for the compared records" : "");
   if (result.first_mismatch >= 0) {
     std::printf("first difference at record %lld\n", static_cast<long long>(result.first_mismatch));
   }
@@ -79,9 +82,8 @@ int replay_marker_points(const ReplayArguments& arguments) {
       static_cast<long long>(frames), static_cast<long long>(result.solved),
       static_cast<long long>(result.ambiguous), result.rms_mean_m * 1e3, result.rms_max_m * 1e3);
   if (result.solved > 0)
-    std::printf(
-        "margin     least %.1f of chi-square to another pose; below %.1f a frame is ambiguous\n",
-        result.margin_min, k_margin_min);
+    std::printf("margin     chi-square to the next pose: least %.1f; ambiguous below %.1f\n",
+                result.margin_min, k_margin_min);
   nlohmann::ordered_json poses = nlohmann::ordered_json::array();
   for (const PointPose& pose : result.frames) {
     nlohmann::ordered_json item{{"time_s", static_cast<double>(pose.time.nanoseconds) * 1e-9},
@@ -116,26 +118,27 @@ int replay_marker_points(const ReplayArguments& arguments) {
 
 void add_replay(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "replay", "Decide a recording again and compare every output record, byte for byte");
+      "replay", "Track a recording again and compare every output record, byte for byte");
   auto arguments = std::make_shared<ReplayArguments>();
   command->footer(
-      "Examples:\n  glint replay out/run.mcap --workers 2 --json replay.json\n"
+      "Examples:\n"
+      "  glint replay out/run.mcap --workers 2 --json replay.json\n"
       "  glint replay --points markers.csv --tool probe.toml --json poses.json\n"
       "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row. Frames less than 0.16 s apart "
-      "are decided\ntogether; where another pose is nearly as likely a frame is `ambiguous`: exit "
-      "code 1.");
-  command->add_option("recording", arguments->recording, "a recording of `glint run`");
+      "are solved\n"
+      "together. A frame with a second pose that is nearly as likely is `ambiguous`: exit code 1.");
+  command->add_option("recording", arguments->recording, "recording of `glint run`");
   command->add_option("--points", arguments->points, "marker positions without images (CSV)");
   command->add_option("--tool", arguments->tool,
-                      "the tool to find in them (.toml, .rom, .ini), or pen (built in)");
-  command->add_option("--workers", arguments->workers, "threads: 1 or 2, the same bytes")
+                      "tool in --points: file (.toml, .rom, .ini) or pen (built in)");
+  command->add_option("--workers", arguments->workers, "threads, 1 or 2: equal records")
       ->check(in_range(1, 2));
   command->add_flag("--allow-truncated", arguments->tolerance.truncated,
-                    "read a file that was cut short or damaged but for what is not whole, and "
-                    "count what is missing: exit code 1");
+                    "read the undamaged records of a truncated or damaged file, count the missing "
+                    "ones; exit code 1");
   command->add_flag("--allow-incomplete", arguments->tolerance.incomplete,
-                    "read a recording that dropped something or ended early");
-  command->add_option("--json", arguments->json, "write the figures here");
+                    "read a recording with dropped messages or an early end");
+  command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] {
     if (arguments->recording.empty() == arguments->points.empty()) {
       throw InputError("replay: expected either a recording or --points FILE");

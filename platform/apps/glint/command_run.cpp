@@ -78,8 +78,7 @@ void open_key_terminal(const RunArguments& arguments, const Cell& cell,
                        std::optional<KeyTerminal>& terminal) {
   if (!arguments.keys) return;
   if (!cell.realtime)
-    throw InputError(
-        "--keys: the run is not in real time; expected one that is (realtime = true, no --fast)");
+    throw InputError("--keys: the run is not in real time; expected realtime = true and no --fast");
   terminal.emplace(STDIN_FILENO, "--keys: standard input");
   std::printf("keys: %s\n", k_keys_text);
   std::fflush(stdout);
@@ -138,9 +137,9 @@ int run(const RunArguments& arguments) {
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
   options.preparing = [&](int rendered, int wanted) {
-    progress.show(
-        0, 1,
-        "renders ahead: " + std::to_string(rendered) + " of " + std::to_string(wanted) + " frames");
+    progress.show(0, 1,
+                  "rendered in advance: " + std::to_string(rendered) + " of " +
+                      std::to_string(wanted) + " frames");
   };
   const Duration frame_time{static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
   SessionResult result = run_source(cell, source.get(), options, frame_time);
@@ -154,17 +153,17 @@ void add_common(CLI::App& command, RunArguments& arguments) {
   add_cell_option(command, arguments.config);
   command
       .add_option("--duration", arguments.duration_s,
-                  "seconds, instead of the cell's or of all recorded frames")
+                  "seconds; default: the cell's, or all recorded frames")
       ->check(in_range(0.1, 3600.0));
-  command.add_option("--out", arguments.out, "folder of all files written")->capture_default_str();
-  command.add_option("--json", arguments.json, "write the table's figures here");
-  command.add_option("--can", arguments.can, "log:FILE or socketcan:IF, instead of the cell's");
+  command.add_option("--out", arguments.out, "output folder")->capture_default_str();
+  command.add_option("--json", arguments.json, "file of the table's figures");
+  command.add_option("--can", arguments.can,
+                     "CAN output, log:FILE or socketcan:IF; default: the cell's");
   command.add_option("--record-level", arguments.level, "full, roi, blobs or outputs");
   command.add_option("--workers", arguments.workers, "threads of the frame group: 1 or 2")
       ->check(in_range(1, 2));
   command
-      .add_option("--method", arguments.method,
-                  "glint, or baseline: the published method (formerly seed)")
+      .add_option("--method", arguments.method, "glint or baseline (Puljiz et al.; formerly seed)")
       ->check(CLI::IsMember({"glint", "baseline", "seed"}));
 }
 
@@ -172,35 +171,41 @@ void add_common(CLI::App& command, RunArguments& arguments) {
 
 void add_run(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
   CLI::App* command =
-      app.add_subcommand("run", "Track: frames in, poses out over DDS and CAN, recorded");
+      app.add_subcommand("run", "Track frames; send poses over CAN and DDS; record");
   auto arguments = std::make_shared<RunArguments>();
   arguments->baseline = baseline;
   command->footer(
-      "Examples:\n  glint run --out out --json out/summary.json\n"
+      "Examples:\n"
+      "  glint run --out out --json out/summary.json\n"
       "  glint run --config my_cell.toml --can socketcan:can0\n"
       "  glint run --keys && glint path out/run.mcap --csv path.csv\n"
-      "Frames are those of the cell's [source]: the simulator's, live ones (" +
+      "The cell's [source] delivers the frames: the simulator, live frames (" +
       live_kinds() +
-      ")\nor recorded ones (platform/sources/README.md).\n"
-      "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
-      "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
+      ")\n"
+      "or recorded frames (platform/sources/README.md).\n"
+      "A cell with tools that this sensor cannot distinguish is refused. The rows `this cell` of "
+      "the\n"
+      "table warn of tools, and of markers of one tool, that it may confuse.");
   add_common(*command, *arguments);
-  command->add_option("--board", arguments->board, "costs: a built-in board or a board file");
-  command->add_option("--plan", arguments->plan, "who runs what: of `glint budget schedule`");
+  command->add_option("--board", arguments->board,
+                      "built-in board or board file: costs for the bounds");
+  command->add_option("--plan", arguments->plan, "schedule written by `glint budget schedule`");
   command
-      ->add_option("--inject", arguments->inject,
-                   "a delay: node=FindBlobs,delay_us=200,frame=512 or node=..,tick=N; several")
+      ->add_option(
+          "--inject", arguments->inject,
+          "delay of a node: node=FindBlobs,delay_us=200,frame=512 or node=..,tick=N; repeatable")
       ->allow_extra_args(false);
   command
       ->add_option("--source-frame-ms", arguments->source_frame_ms,
-                   "time the source needs for each frame from when it is due, ms; default: 0")
+                   "simulated delay of each frame by its source, ms; default: 0")
       ->check(in_range(0.0, 10'000.0));
-  command->add_flag("--trace", arguments->trace, "when every node ran: trace.spans in --out");
-  command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
+  command->add_flag("--trace", arguments->trace,
+                    "trace of every node's execution: trace.spans in --out");
+  command->add_flag("--no-dds", arguments->no_dds, "no output over DDS");
   command->add_flag("--keys", arguments->keys,
-                    std::string("keys of this terminal are the pen's buttons: ") + k_keys_text);
+                    std::string("keys of this terminal as the pen's buttons: ") + k_keys_text);
   command->add_flag("--fast", arguments->as_fast_as_can_be,
-                    "as fast as can be instead of in real time: no DDS, the same bytes every time");
+                    "as fast as possible, not in real time: no DDS, reproducible output");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
@@ -211,19 +216,20 @@ void add_track(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
   arguments->recorded = arguments->as_fast_as_can_be = true;
   arguments->baseline = baseline;
   command->footer(
-      "Examples:\n  glint track sim/frames.mcap --out again\n"
+      "Examples:\n"
+      "  glint track sim/frames.mcap --out again\n"
       "  glint track frames --config my_cell.toml --json poses.json\n"
       "  glint track bag --config my_cell.toml\n"
-      "SOURCE: a recording of `glint run` or `glint simulate` (its own cell holds where no "
-      "--config\n"
-      "is given), a ROS 2 bag (MCAP), a folder with frames.csv, a capture of StreamRecorder or a\n"
-      "file of hl2ss (platform/sources/README.md).");
-  command->add_option("SOURCE", arguments->source, "instead of the cell's [source]");
+      "SOURCE: a recording of `glint run` or `glint simulate` (default cell: the recording's\n"
+      "own), a ROS 2 bag (MCAP), a folder with frames.csv, a capture of StreamRecorder or a file "
+      "of\n"
+      "hl2ss (platform/sources/README.md).");
+  command->add_option("SOURCE", arguments->source, "recorded frames; default: the cell's [source]");
   command->add_option("--kind", arguments->kind,
-                      "of SOURCE: " + recorded_kinds() + "; default: by what is there");
+                      "kind of SOURCE: " + recorded_kinds() + "; default: detected");
   add_common(*command, *arguments);
   command->add_flag("--allow-truncated", arguments->tolerance.truncated,
-                    "read a recording that was cut short or damaged: exit code 1");
+                    "read a truncated or damaged recording; exit code 1");
   command->callback([arguments, &exit_code] {
     arguments->tolerance.incomplete = arguments->tolerance.truncated;
     exit_code = run(*arguments);

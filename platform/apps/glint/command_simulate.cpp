@@ -124,23 +124,22 @@ int simulate(const SimulateArguments& arguments) {
 
 void add_simulate(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("simulate", "Make frames and the truth beside them, without tracking");
+      app.add_subcommand("simulate", "Simulate frames with ground truth, without tracking");
   auto arguments = std::make_shared<SimulateArguments>();
   command->footer(
       "Example: glint simulate --duration 5 --out sim\n"
-      "Writes frames.mcap and, as TUM text, the truth of head and first tool, the headset's own\n"
+      "Files: frames.mcap; as TUM text the true poses of head and first tool, the headset's\n"
       "localisation, and the reference tracker's poses.");
   add_cell_option(*command, arguments->config);
-  command->add_option("--duration", arguments->duration_s, "seconds, instead of the cell's")
+  command->add_option("--duration", arguments->duration_s, "seconds; default: the cell's")
       ->check(in_range(0.1, 3600.0));
-  command->add_flag("--no-frames", arguments->without_pixels, "only the trajectories");
+  command->add_flag("--no-frames", arguments->without_pixels, "trajectories only");
   command
       ->add_option("--frame-files", arguments->file_every,
-                   "each so-manieth frame is a file, too: glint inspect --layout ahat")
+                   "every Nth frame also as a file for `glint inspect --layout ahat`")
       ->check(CLI::PositiveNumber);
-  command->add_option("--out", arguments->out, "folder of all files written")
-      ->capture_default_str();
-  command->add_option("--json", arguments->json, "write the list of files here");
+  command->add_option("--out", arguments->out, "output folder")->capture_default_str();
+  command->add_option("--json", arguments->json, "file of the list of files");
   command->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }
 

@@ -120,21 +120,19 @@ void add_verify(CLI::App& app, int& exit_code) {
   command->footer(
       "Example: glint verify --recording out/run.mcap --distance-mm 200 --json verify.json\n"
       "Record: touch one point ten times or more, a second one at the known distance five times,\n"
-      "three seconds each; at each touch lean the tool to another side and look from another\n"
-      "place, near and far. Then hold the tool still for 20 s. Touches and rest are found by\n"
-      "themselves.\n"
-      "Judged are repeatability, scale, rest, and each calibration error that the touches show:\n"
-      "each beside what the cell states, all together at 95 %. `not shown`: what stays open.\n"
-      "Exit: 0 it agrees, 1 it does not, 2 bad use or a recording that lacks touches or rest.");
+      "three seconds each. Lean the tool to another side at each touch, and look from another\n"
+      "place, near and far. Then hold the tool still for 20 s. `verify` detects touches and rest.\n"
+      "It tests repeatability, scale, rest, and each observable calibration error against the\n"
+      "cell's stated values, all together at 95 %. `not shown`: not observable.\n"
+      "Exit: 0 agreement, 1 no agreement, 2 bad use, or no touches or rest in the recording.");
   command
       ->add_option("--recording", arguments->recording,
-                   "recorded frames: a recording, a bag, a folder or a headset's capture, as "
-                   "`glint track` reads them")
+                   "recorded frames (any kind that `glint track` reads)")
       ->required();
   add_cell_option(*command, arguments->config,
                   "cell file of the camera; default: the recording's own, else the built-in cell");
-  command->add_option("--tool", arguments->tool, "of the cell's tools; default: the first");
-  command->add_option("--distance-mm", arguments->distance_mm, "distance of the two points, known")
+  command->add_option("--tool", arguments->tool, "tool of the cell; default: the first");
+  command->add_option("--distance-mm", arguments->distance_mm, "known distance of the two points")
       ->required()
       ->check(in_range(50.0, 1000.0));
   command
@@ -142,7 +140,7 @@ void add_verify(CLI::App& app, int& exit_code) {
                    "standard deviation of that distance")
       ->capture_default_str()
       ->check(in_range(0.0, 10.0));
-  command->add_option("--json", arguments->json, "write the figures here");
+  command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] { exit_code = run_verify(*arguments); });
 }
 

@@ -25,7 +25,7 @@ void start_lab() {
   arguments.push_back(nullptr);
   execv(program.c_str(), arguments.data());
   throw MissingDevice(program + ": " + std::strerror(errno) +
-                      "; expected it there, for experiments and --method baseline");
+                      "; expected glint_lab beside glint, for experiments and --method baseline");
 }
 
 }  // namespace glint

@@ -11,7 +11,8 @@ namespace {
 // The words after `experiment` are glint_lab's, --help among them.
 void add_experiment(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "experiment", "How good the estimates are, beside the published method and other rivals");
+      "experiment",
+      "Run an experiment: errors of the estimates, beside the published method and others");
   command->prefix_command();
   command->set_help_flag();
   command->callback([] { glint::start_lab(); });

@@ -10,8 +10,8 @@ namespace glint {
 
 std::string advice_above_bound(CostCounter counter, const std::string& made_by) {
   if (counter != CostCounter::time || made_by.find("--cache cold") != std::string::npos) return "";
-  return "next     costs of warm caches bound no call that finds them cold; a board that bounds "
-         "both:\n         glint budget measure --count time --cache cold --write BOARD.toml\n";
+  return "next     warm-cache costs do not bound a call with cold caches; a board for both:\n"
+         "         glint budget measure --count time --cache cold --write BOARD.toml\n";
 }
 
 MeasureRequest measure_request(const MeasureTarget& target) {
@@ -21,7 +21,7 @@ MeasureRequest measure_request(const MeasureTarget& target) {
   request.count_instructions = target.count == "instructions";
   if (!request.count_instructions && !own) {
     throw InputError("--count is time and --arch is " + target.arch + "; expected --arch " +
-                     k_own_arch + ": an emulator's time says nothing");
+                     k_own_arch + ": an emulator's time is not the machine's");
   }
   request.program = !target.program_file.empty() ? target.program_file
                     : own                        ? beside + "/" + target.program

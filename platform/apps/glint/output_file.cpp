@@ -19,7 +19,7 @@ void make_folder(const std::string& path) {
   if (path.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw InputError(path + ": " + error.message() + "; expected a folder to write to");
+  if (error) throw InputError(path + ": " + error.message() + "; expected a writable folder");
 }
 
 void make_folder_of(const std::string& path) {
@@ -29,7 +29,7 @@ void make_folder_of(const std::string& path) {
 void write_text(const std::string& path, const std::string& text) {
   make_folder_of(path);
   if (const std::string reason = write_file_atomically(path, text); !reason.empty()) {
-    throw InputError(path + ": cannot be written: " + reason + "; expected a place for a file");
+    throw InputError(path + ": cannot be written: " + reason + "; expected a writable path");
   }
 }
 
@@ -56,7 +56,7 @@ LineWriter::~LineWriter() {
 
 void LineWriter::fail() const {
   throw InputError(path_ + ": cannot be written: " + std::generic_category().message(errno) +
-                   "; expected a place for a file");
+                   "; expected a writable path");
 }
 
 void LineWriter::write_out() {

@@ -20,7 +20,7 @@ RunSchedule planned_run(const Cell& cell, const std::string& board_name,
   if (board_name.empty() && plan_file.empty()) return schedule_by_rule(cell);
   if (board_name.empty() || plan_file.empty()) {
     throw InputError("--board \"" + board_name + "\" and --plan \"" + plan_file +
-                     "\": expected both, for a plan holds on one board's costs");
+                     "\": expected both: a plan holds only with one board's costs");
   }
   const Board board = load_board(board_name, expected_board(), BoardUse::run_here);
   CheckInput input{cell, board, {}, limits_of(cell), {}};

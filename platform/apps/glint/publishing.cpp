@@ -26,7 +26,7 @@ void add_network_options(CLI::App& command, DdsSettings& settings) {
 void add_publish_options(CLI::App& command, PublishOptions& options) {
   command
       .add_option("--dds", options.seconds,
-                  "publish it over DDS for so many seconds, for listeners that come later too")
+                  "seconds of publication over DDS, also for late subscribers")
       ->check(in_range(0.1, 86400.0));
   add_network_options(command, options.settings);
 }
@@ -42,8 +42,8 @@ void keep_publishing(const MapPublisher& publisher, const PublishOptions& option
     std::this_thread::sleep_for(k_poll_period);
   }
   const bool all_acknowledged = publisher.wait_for_acknowledgements(k_receipts_limit);
-  std::printf("published  %.1f s, listeners to every topic %d%s\n", options.seconds, readers_max,
-              all_acknowledged ? "" : "; not all have received everything");
+  std::printf("published  %.1f s, subscribers of every topic %d%s\n", options.seconds, readers_max,
+              all_acknowledged ? "" : "; not all have received every message");
 }
 
 }  // namespace glint

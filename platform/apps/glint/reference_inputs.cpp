@@ -25,7 +25,7 @@ Pose checked(const Pose& pose, const std::string& what) {
 void check_frame(const ReceivedInitialPose& guess, const std::string& camera_file) {
   const std::string found = guess.frame.data(), expected = read_camera_frame(camera_file);
   if (found.empty() || expected.empty() || found == expected) return;
-  throw InputError(std::string(k_initial_pose_topic) + ": a guess in frame \"" + found +
+  throw InputError(std::string(k_initial_pose_topic) + ": an initial pose in frame \"" + found +
                    "\"; expected T_camera_base in \"" + expected + "\", the frame_id of " +
                    camera_file);
 }
@@ -42,10 +42,10 @@ void require_inputs(const ReferenceArguments& arguments) {
       {"--seed", !listens && !exports && arguments.initial_guess.empty()}};
   for (const auto& [option, missing] : wanted) {
     if (missing) {
-      throw InputError(std::string(option) +
-                       " is missing; expected --urdf or --model, --depth, --joints, --camera and "
-                       "--seed (what is not depth or camera may be heard: --listen), or --urdf and "
-                       "--export-model alone");
+      throw InputError(
+          std::string(option) +
+          " is missing; expected --urdf or --model, --depth, --joints, --camera and --seed (with "
+          "--listen only --depth and --camera), or --urdf and --export-model alone");
     }
   }
   if (!arguments.export_file.empty() && !arguments.model.empty()) {

@@ -37,7 +37,7 @@ void print_pose(const char* what, const Candidate& c) {
   const Quaternion& q = c.alignment.T_world_base.rotation;
   std::printf("%-9s  [%.4f, %.4f, %.4f] m, quaternion x y z w [%.5f, %.5f, %.5f, %.5f]\n", what,
               t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
-  std::printf("           median distance %.2f mm, within 20 mm %.1f %%, seen through %.1f %%\n",
+  std::printf("           median distance %.2f mm, within 20 mm %.1f %%, free space %.1f %%\n",
               1e3 * c.judgement.median_m, 100 * c.judgement.inlier_share(),
               100 * c.judgement.seen_through_share());
 }
@@ -50,12 +50,12 @@ void print_reference(const Reference& reference, const ReferenceContext& facts) 
   std::printf("sigma      %.2f mm, %.3f deg an axis\n",
               1e3 * std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3),
               k_degrees_per_radian * std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3));
-  std::printf("searched   %.2f m and %.0f deg about the rough pose, %d alignments\n",
+  std::printf("searched   %.2f m and %.0f deg about the initial pose, %d alignments\n",
               facts.range.translation_m, k_degrees_per_radian * facts.range.rotation_rad,
               reference.starts);
   for (const Candidate& rival : reference.alternatives) print_pose("rival", rival);
   if (facts.triangles_skipped > 0) {
-    std::printf("meshes     %d triangles without an area skipped\n", facts.triangles_skipped);
+    std::printf("meshes     %d triangles without area skipped\n", facts.triangles_skipped);
   }
   std::printf("verdict    %s%s%s\n", name_of(reference.verdict).c_str(),
               reference.reason.empty() ? "" : ": ", printable(reference.reason).c_str());

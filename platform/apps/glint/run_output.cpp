@@ -51,8 +51,8 @@ ordered_json source_late_part(const SessionResult& result) {
 
 std::string source_late_text(const SessionResult& result) {
   return (result.source.text.empty() ? "the simulator" : result.source.text) + ": " +
-         std::to_string(result.frames_late) + " frames late, " + percent(source_late_part(result)) +
-         " of the ticks without a measurement for it";
+         std::to_string(result.frames_late) + " late frames, " + percent(source_late_part(result)) +
+         " of the ticks without a measurement because of them";
 }
 
 // Source of recorded frames, and each count that is not 0.
@@ -214,9 +214,9 @@ std::vector<std::pair<std::string, std::string>> output_rows(const ordered_json&
     std::string text = "measured " + percent(tool.at("measured")) + ", predicted " +
                        percent(tool.at("predicted")) + ", lost " + percent(tool.at("lost"));
     if (tool.at("none_yet") != 0 && !tool.at("none_yet").is_null()) {
-      text += ", none yet " + percent(tool.at("none_yet"));
+      text += ", none so far " + percent(tool.at("none_yet"));
     }
-    rows.emplace_back("left over CAN" + whose, text + " of " + left);
+    rows.emplace_back("sent over CAN" + whose, text + " of " + left);
     rows.emplace_back("longest unmeasured" + whose,
                       in_milliseconds(tool.at("longest_without_measurement_ms"), result));
     if (tool.contains("by_rate")) add_rate_rows(tool, whose, rows);
@@ -232,7 +232,7 @@ std::vector<std::string> failures_of(const SessionResult& result) {
   std::vector<std::string> lines = lines_of(losses_of(result));
   if (!result.fault.empty()) lines.push_back(result.fault);
   if (!sums_hold(result)) {
-    lines.emplace_back("DDS: offered, written and received samples do not add up");
+    lines.emplace_back("DDS: the counts of offered, written and received samples do not agree");
   }
   const ordered_json late = source_late_part(result);
   if (!late.is_null() && late > k_source_late_max) {
@@ -242,10 +242,10 @@ std::vector<std::string> failures_of(const SessionResult& result) {
   const bool any_pose = result.accuracy.frames > 0 ? result.accuracy.poses > 0  // by ground truth
                                                    : result.frames_tracked > 0;
   if (!any_pose) {
-    lines.emplace_back("not one pose in the whole run: see the tools, the camera and the method");
+    lines.emplace_back("no pose in the whole run; check the tools, the camera and the method");
   } else if (result.sent.ticks > 0 && !result.sent.any_measured()) {
     lines.emplace_back(
-        "not one measured tick left over CAN, though frames gave poses: see the age of the frames");
+        "no measured tick sent over CAN, although frames gave poses; check the age of the frames");
   }
   return lines;
 }

@@ -112,14 +112,15 @@ ordered_json tool_orders(const Cell& cell, const SessionResult& result) {
 
 void tool_order_rows(const ordered_json& orders) {
   for (const auto& one : orders.at("by_tool")) {
-    row("tool changed over DDS", one.at("tool").get<std::string>() + ": added " +
+    row("tool changes over DDS", one.at("tool").get<std::string>() + ": added " +
                                      one.at("added").dump() + " times, removed " +
                                      one.at("removed").dump());
   }
 }
 
 std::string released_text(std::uint64_t released) {
-  return released == 0 ? "" : "; " + std::to_string(released) + " released, their sender gone";
+  return released == 0 ? ""
+                       : "; " + std::to_string(released) + " released after their sender's loss";
 }
 
 // Noise beyond that of a marker's own pixels, 1 sigma.
@@ -236,8 +237,7 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
 void print_table(const ordered_json& summary, const SessionResult& result) {
   const Accuracy& accuracy = result.accuracy;
   std::printf("\n%s, %.1f s%s\n", summary.at("camera").get<std::string>().c_str(),
-              result.duration_s,
-              best_effort(result) ? "  (best effort: see what this machine spoils)" : "");
+              result.duration_s, best_effort(result) ? "  (best effort: see `this machine`)" : "");
   for (const auto& [name, value] : output_rows(summary, result)) row(name.c_str(), value);
   row("frames",
       std::to_string(result.frames) + " (" + std::to_string(accuracy.refused) + " refused)");
@@ -265,12 +265,12 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   if (const auto above = budget.at("frames_above_bound").get<std::int64_t>(); above > 0) {
     row("  ABOVE THE BOUND", std::to_string(above) + " of " +
                                  std::to_string(result.latencies.size()) +
-                                 " frames: here the bound is void");
+                                 " frames: the bound does not hold");
   }
   for (const auto& doubt : budget.at("doubts")) row("  doubt", doubt.get<std::string>());
   const auto overruns = [](const OverrunCounts& counts) {
     return std::to_string(counts.missed) + " missed, " + std::to_string(counts.will_miss) +
-           " noticed ahead";
+           " predicted";
   };
   row("overruns, frame", overruns(result.frame_overruns));
   row("overruns, tick", overruns(result.tick_overruns));
@@ -284,35 +284,35 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
     row("map", std::to_string(background->map.smoothed) + " points on " +
                    std::to_string(background->map.planes) + " planes, of " +
                    std::to_string(background->map.voxels) + " voxels in " +
-                   std::to_string(background->map.pictures) + " pictures (" +
+                   std::to_string(background->map.pictures) + " images (" +
                    std::to_string(background->images_missed) + " missed)");
     const RobotProgress& robot = background->robot;
     if (robot.last != FollowOutcome::no_reference) {
-      row("robot", "followed in " + std::to_string(robot.followed) + " pictures, " +
-                       std::to_string(robot.jumps) + " jumps refused, " +
-                       std::to_string(robot.inconclusive) + " told too little");
+      row("robot", "followed in " + std::to_string(robot.followed) + " images, " +
+                       std::to_string(robot.jumps) + " jumps rejected, " +
+                       std::to_string(robot.inconclusive) + " inconclusive");
       if (background->joints_used + background->joints_skipped > 0) {
-        row("robot's joints", "heard: by " + std::to_string(background->joints_used) + " states, " +
-                                  std::to_string(background->joints_skipped) + " passed over; " +
+        row("robot's joints", "from " + std::to_string(background->joints_used) + " states, " +
+                                  std::to_string(background->joints_skipped) + " skipped; " +
                                   std::to_string(background->images_without_joints) +
-                                  " pictures too long after them");
+                                  " images without current joints");
       }
     }
   }
   row("heap allocations after start", result.heap_counted
                                           ? std::to_string(result.heap_allocations_after_start)
-                                          : "not counted (only in a live run)");
+                                          : "not counted (live runs only)");
   row("page faults after start", std::to_string(result.page_faults_after_start));
   row("CAN frames", std::to_string(result.can.sent) + " sent, " +
                         std::to_string(result.can.failed) + " refused, " +
                         std::to_string(result.can.dropped) + " dropped (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
   if (const ButtonFrameCounts& received = result.can_received; received.any()) {
-    row("heard over CAN", std::to_string(received.received) + " frames of buttons; " +
-                              std::to_string(received.refused) + " refused" +
-                              released_text(received.released));
+    row("received over CAN", std::to_string(received.received) + " frames of buttons; " +
+                                 std::to_string(received.refused) + " refused" +
+                                 released_text(received.released));
   }
-  if (!result.can_receive_error.empty()) row("not heard over CAN", result.can_receive_error);
+  if (!result.can_receive_error.empty()) row("no input over CAN", result.can_receive_error);
   if (result.key_events > 0) row("buttons by key", std::to_string(result.key_events) + " changes");
   const auto of_reader = [&](std::uint64_t count) {
     return result.dds_reader_error.empty() ? std::to_string(count) : "-";
@@ -322,12 +322,13 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                  of_reader(result.dds_reader.missed) + " missed, " +
                  std::to_string(result.dds.ring_dropped) + " dropped");
   if (const ReceivedCounts& received = result.dds_received; received.any()) {
-    row("heard over DDS",
-        std::to_string(received.joints) + " joint states, " +
-            std::to_string(received.descriptions) + " descriptions, " +
-            std::to_string(received.guesses) + " guesses, " + std::to_string(received.buttons) +
-            " buttons, " + std::to_string(received.tools) + " tools; " +
-            std::to_string(received.refused) + " refused" + released_text(received.released));
+    row("received over DDS", std::to_string(received.joints) + " joint states, " +
+                                 std::to_string(received.descriptions) + " descriptions, " +
+                                 std::to_string(received.guesses) + " initial poses, " +
+                                 std::to_string(received.buttons) + " buttons, " +
+                                 std::to_string(received.tools) + " tools; " +
+                                 std::to_string(received.refused) + " refused" +
+                                 released_text(received.released));
   }
   tool_order_rows(summary.at("dds_tool_changes"));
   row("output_sha256", result.output_sha256);

@@ -170,7 +170,7 @@ bool BudgetDiff::worse() const {
 BudgetDiff budget_diff(const std::string& before, const std::string& after,
                        const DiffSettings& settings) {
   if (is_measurement(before) != is_measurement(after)) {
-    throw InputError(after + ": not of the kind of " + before +
+    throw InputError(after + ": kind differs from " + before +
                      "; expected two measurements (.json) or two runs (folder or trace.spans)");
   }
   return is_measurement(before) ? diff_measurements(before, after, settings)
@@ -178,7 +178,7 @@ BudgetDiff budget_diff(const std::string& before, const std::string& after,
 }
 
 std::string name_of(Change change) {
-  constexpr const char* names[] = {"same", "faster", "slower", "no difference shown"};
+  constexpr const char* names[] = {"same", "faster", "slower", "no difference detected"};
   return names[static_cast<std::size_t>(change)];
 }
 

@@ -67,8 +67,8 @@ bool verifies_on_other_half(const Values& verification, const ExtremeSettings& s
   for (std::size_t i = estimate.tests.size() - 2; i < estimate.tests.size(); ++i) {
     const TestResult& test = estimate.tests[i];
     if (test.passed) continue;
-    estimate.reason = "the fit to one half does not hold on the other (" + test.name +
-                      ", p = " + p_text(test.p) + ")";
+    estimate.reason =
+        "the fit to one half fails on the other (" + test.name + ", p = " + p_text(test.p) + ")";
     return false;
   }
   return true;
@@ -78,7 +78,7 @@ bool too_few_distinct(const Values& values, ExtremeEstimate& estimate) {
   const std::set<double> distinct(values.begin(), values.end());
   if (2 * distinct.size() >= values.size()) return false;
   estimate.reason = "only " + std::to_string(distinct.size()) + " different values among " +
-                    std::to_string(values.size()) + " extremes: no continuous distribution";
+                    std::to_string(values.size()) + " extremes: the distribution is not continuous";
   return true;
 }
 
@@ -109,7 +109,7 @@ void add_interval(const ExtremeSettings& settings, ExtremeEstimate& estimate, Fi
     estimate.reason = text;
   } else if (!(estimate.high <= settings.interval_ratio_max * estimate.low)) {
     std::snprintf(text, sizeof text,
-                  "the values seen leave the level open: its interval is %.4g to %.4g",
+                  "the observed values do not determine the level: its interval is %.4g to %.4g",
                   estimate.low, estimate.high);
     estimate.reason = text;
   }

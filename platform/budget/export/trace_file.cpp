@@ -51,7 +51,7 @@ TraceFile read_trace(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
   if (!file || !std::getline(file, line)) {
-    throw InputError(path + ": cannot be read; expected a trace.spans that glint run wrote");
+    throw InputError(path + ": cannot be read; expected a trace.spans of glint run");
   }
   TraceFile trace = read_header(path, line);
   for (TraceSpan span; file.read(reinterpret_cast<char*>(&span), sizeof span);) {
@@ -80,7 +80,7 @@ TraceFile around_frame(const TraceFile& trace, std::uint32_t frame) {
       sent = sent < 0 ? span.end_ns : std::min(sent, span.end_ns);
     }
   }
-  if (end < 0) throw InputError("--frame " + std::to_string(frame) + ": the trace has none such");
+  if (end < 0) throw InputError("--frame " + std::to_string(frame) + ": not in the trace");
   TraceFile part = trace;
   std::erase_if(part.spans, [&](const TraceSpan& span) {
     return span.end_ns < begin || span.begin_ns > std::max(end, sent);
@@ -101,7 +101,8 @@ void write_trace(const std::string& path, const TraceFile& trace) {
   file << header.dump() << '\n';
   file.write(reinterpret_cast<const char*>(trace.spans.data()),
              static_cast<std::streamsize>(trace.spans.size() * sizeof(TraceSpan)));
-  if (!file.flush()) throw InputError(path + ": cannot be written; expected a folder with room");
+  if (!file.flush())
+    throw InputError(path + ": cannot be written; expected a writable folder with free space");
 }
 
 }  // namespace glint

@@ -23,7 +23,7 @@ namespace glint {
   asm volatile("isb\n\tmrs %0, cntvct_el0\n\tisb" : "=r"(count)::"memory");
   return count;
 #else
-#error "no steady counter is known for this architecture"
+#error "no steady counter for this architecture"
 #endif
 }
 

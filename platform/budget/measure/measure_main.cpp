@@ -196,7 +196,7 @@ int run(int argc, char** argv) {
     }
   }
   if (arguments.list) return 0;
-  std::fprintf(stderr, "glint_measure: no kernel is named \"%s\"; --list names all\n",
+  std::fprintf(stderr, "glint_measure: unknown kernel \"%s\"; see --list\n",
                arguments.kernel.c_str());
   return 2;
 }

@@ -49,8 +49,8 @@ const std::vector<double>& costs_in(const Measurement& measurement, const Kernel
     }
   }
   throw InputError("--write: " + std::string(kernel.kernel) +
-                   " was not measured with the loops that the graph's node has; expected a"
-                   " measuring program of this version, and all kernels");
+                   " was measured with other loops than those of the graph's node; expected a "
+                   "measuring program of this version, and all kernels");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class MeasuringRun {
  public:
   explicit MeasuringRun(const MeasureRequest& request) : request_(request) {
     if (!std::filesystem::exists(request.program)) {
-      throw MissingDevice(request.program + ": no measuring program there; expected glint_measure" +
+      throw MissingDevice(request.program + ": no measuring program; expected glint_measure" +
                           " (--measure-program FILE)");
     }
   }
@@ -87,7 +87,7 @@ class MeasuringRun {
   }
   int start(const std::vector<std::string>& command, const std::string& name) const {
     const int process = start_program(command, folder_.path(), name + ".output");
-    if (process < 0) throw MissingDevice("no process can be started to measure " + name);
+    if (process < 0) throw MissingDevice("cannot start a process to measure " + name);
     return process;
   }
   void check(int status, const std::string& name) const {
@@ -129,7 +129,7 @@ class MeasuringRun {
       counted.resize(bytes.size() / sizeof(std::uint64_t));
       std::memcpy(counted.data(), bytes.data(), counted.size() * sizeof(std::uint64_t));
       if (counted.empty())
-        throw InputError(name + ": nothing was counted; expected markers in " + request_.program);
+        throw InputError(name + ": no counts; expected markers in " + request_.program);
     }
     return parse_observations(name, file, read_text(file), counted);
   }
@@ -146,7 +146,7 @@ void keep_minimum(KernelObservations& kept, const KernelObservations& pass) {
   for (std::size_t i = 0; i < kept.calls.size(); ++i) {
     if (kept.calls[i].call.counts != pass.calls[i].call.counts) {
       throw InputError(kept.name + ": call " + std::to_string(i) +
-                       " has other loop counts in a pass; expected the same work each time");
+                       " has other loop counts in a pass; expected equal work in each pass");
     }
     kept.calls[i].call.cost = std::min(kept.calls[i].call.cost, pass.calls[i].call.cost);
   }

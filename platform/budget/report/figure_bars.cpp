@@ -58,7 +58,7 @@ Illustration slack_figure(const std::string& name, const std::string& caption,
     drawing.line(x, 4, x, height + 8, percent == 0 ? "axis" : "grid");
     drawing.text(x, height + 22, number_text(percent, 0) + " %", "faint small middle");
   }
-  drawing.text(width - right, height + 38, "left of the deadline", "faint small end");
+  drawing.text(width - right, height + 38, "slack to the deadline", "faint small end");
   double y = 8;
   for (const SlackBar& bar : bars) {
     const bool short_of = bar.percent < 0;
@@ -137,9 +137,9 @@ Illustration quantile_figure(const std::string& name, const std::string& title,
   const double low = std::min(verification.front(), expected.front());
   const double high = std::max({verification.back(), expected.back(), low + 1e-9});
   const auto place = [&](double value) { return (value - low) / (high - low) * size; };
-  const std::string caption = title + ": the half that was not fitted (" +
-                              std::to_string(verification.size()) +
-                              " extremes) over the fit's quantiles: on the line where both agree.";
+  const std::string caption =
+      title + ": the validation half (" + std::to_string(verification.size()) +
+      " extremes) over the fit's quantiles. Points on the line: both agree.";
   Drawing drawing(width, height, caption);
   drawing.text(0, 14, title, "strong");
   drawing.box({left, top, size, size}, "lane");

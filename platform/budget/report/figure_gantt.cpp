@@ -94,8 +94,7 @@ Illustration gantt_figure(const std::string& name, const std::string& caption,
     most = std::max(most, end);
   }
   const bool one_axis = most <= k_common_axis_ratio_max * least;
-  const std::string words =
-      caption + (one_axis ? "" : " Each strip has its own time axis: mind the numbers below it.");
+  const std::string words = caption + (one_axis ? "" : " Each strip has its own time axis.");
   Drawing drawing(k_width, height, words);
   double top = 0;
   for (const GanttStrip& strip : strips) {

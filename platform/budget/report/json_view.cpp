@@ -19,7 +19,7 @@ ordered_json parse(const std::string& text, const std::string& path) {
   return ordered_json::parse(text, [&](int depth, auto, const ordered_json&) {
     if (depth <= k_max_depth) return true;
     throw InputError(path + ": nested deeper than " + std::to_string(k_max_depth) +
-                     " levels; expected a file that glint wrote with --json");
+                     " levels; expected a file of glint --json");
   });
 }
 
@@ -34,11 +34,9 @@ JsonView JsonView::of_file(const std::string& path) {
     const auto end =
         content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size()));
     throw InputError(path + ":" + std::to_string(1 + std::count(content.begin(), end, '\n')) +
-                     ": no JSON here; expected a file that glint wrote with --json");
+                     ": invalid JSON; expected a file of glint --json");
   } catch (const nlohmann::json::out_of_range&) {  // states no position
-    throw InputError(path +
-                     ": a number that no double holds; expected a file that glint wrote with "
-                     "--json");
+    throw InputError(path + ": a number out of range; expected a file of glint --json");
   }
   view.file_ = std::make_shared<const std::string>(path);
   view.value_ = view.root_.get();

@@ -93,9 +93,9 @@ ReportSources read_sources(const ReportPaths& paths) {
       take(trace, "every span of the run");
     }
     if (!sources.summary && !sources.trace) {
-      throw InputError(paths.run_folder +
-                       ": neither summary.json nor trace.spans; expected a folder that glint run "
-                       "--out wrote");
+      throw InputError(
+          paths.run_folder +
+          ": neither summary.json nor trace.spans; expected a folder of glint run --out");
     }
   }
   if (!paths.footprint.empty()) {
@@ -104,7 +104,7 @@ ReportSources read_sources(const ReportPaths& paths) {
     take(paths.footprint, "memory, stack and code");
   }
   if (sources.inputs.empty()) {
-    throw InputError("nothing to report on; expected --measure, --check, --run or --footprint");
+    throw InputError("no input; expected --measure, --check, --run or --footprint");
   }
   return sources;
 }

@@ -39,8 +39,8 @@ Section loops_section(const ReportSources& sources) {
   // Counts depend on the code, not on the computer: the first file is shown; all must agree.
   const JsonView& measure = sources.measures.front();
   Table table{
-      "Declared: the most a loop may run in one call, by the code. Observed: the most it did "
-      "among all inputs. A loop that reached its maximum stopped there and said so.",
+      "Declared: the loop's maximum in one call, from the code. Observed: its maximum over all "
+      "inputs. A loop that reached its maximum stopped and returned a reason.",
       {{"Kernel"},
        {"Loop"},
        {"Declared", NumberKind::bound, true},
@@ -65,7 +65,7 @@ Section loops_section(const ReportSources& sources) {
     }
   }
   section.blocks.push_back(Sentence{std::to_string(reached) + " of " + std::to_string(loops) +
-                                    " loops were driven to their declared maximum (" +
+                                    " loops reached their declared maximum (" +
                                     conditions_of(measure) + ")."});
   section.blocks.push_back(table);
   return section;
@@ -78,19 +78,20 @@ Section costs_section(const ReportSources& sources) {
     return section;
   }
   for (const JsonView& measure : sources.measures) {
-    Table table{"In " + unit_of(measure) + " a call: " + conditions_of(measure) +
-                    ". The envelope is fitted on one half of the inputs and judged on the other.",
-                {{"Kernel"},
-                 {"Bound", NumberKind::bound, true},
-                 {"Largest", NumberKind::observed, true},
-                 {"Bound / largest", NumberKind::none, true},
-                 {"Inputs", NumberKind::none, true},
-                 {"Largest on input"},
-                 {"Fitted: above", NumberKind::observed, true},
-                 {"Judged: above", NumberKind::observed, true},
-                 {"p50", NumberKind::observed, true},
-                 {"p99.9", NumberKind::observed, true}},
-                {}};
+    Table table{
+        "In " + unit_of(measure) + " a call: " + conditions_of(measure) +
+            ". The envelope is fitted on one half of the inputs and validated on the other.",
+        {{"Kernel"},
+         {"Bound", NumberKind::bound, true},
+         {"Largest", NumberKind::observed, true},
+         {"Bound / largest", NumberKind::none, true},
+         {"Inputs", NumberKind::none, true},
+         {"Largest on input"},
+         {"Fitted: above", NumberKind::observed, true},
+         {"Validated: above", NumberKind::observed, true},
+         {"p50", NumberKind::observed, true},
+         {"p99.9", NumberKind::observed, true}},
+        {}};
     for (const JsonView& kernel : measure.list("kernels")) {
       const double bound = kernel.number("bound"), most = kernel.number("observed_max");
       const bool has_parts = kernel.has("percentiles");
@@ -116,8 +117,8 @@ Section costs_section(const ReportSources& sources) {
 Section interference_section(const ReportSources& sources) {
   Section section{"interference", "Interference", {}};
   Table table{
-      "A kernel's largest cost beside a named enemy, over its largest cost alone. Bounds do "
-      "not include it unless the board file says so.",
+      "Ratio of a kernel's largest cost beside a named interference to its largest cost alone. "
+      "Bounds exclude it unless the board file includes it.",
       {{"Kernel"}, {"Enemy"}, {"Factor", NumberKind::observed, true}, {"Measured on"}},
       {}};
   for (const JsonView& measure : sources.measures) {
@@ -129,7 +130,7 @@ Section interference_section(const ReportSources& sources) {
     }
   }
   if (table.rows.empty()) {
-    section.blocks.push_back(missing_input("--measure F", "glint budget measure, beside enemies,"));
+    section.blocks.push_back(missing_input("--measure F", "glint budget measure --enemy"));
   } else {
     section.blocks.push_back(table);
   }
@@ -143,8 +144,8 @@ Section footprint_section(const ReportSources& sources) {
     return section;
   }
   Table table{
-      "In bytes. Stack: from the compiler's frames along the deepest call path, and the "
-      "deepest byte of a painted stack that was overwritten.",
+      "In bytes. Stack: from the compiler's frames along the deepest call path; and the deepest "
+      "overwritten byte of a painted stack.",
       {{"Node"},
        {"State", NumberKind::bound, true},
        {"Tokens", NumberKind::bound, true},

@@ -53,7 +53,7 @@ void add_series(const std::string& what, const std::vector<double>& series,
 }  // namespace
 
 Section estimates_section(const ReportSources& sources) {
-  Section section{"estimates", "Estimates of what was not seen yet", {}};
+  Section section{"estimates", "Estimates beyond the observed values", {}};
   if (!sources.trace) {
     section.blocks.push_back(
         missing_input("--run DIR", "glint run --out DIR --json DIR/summary.json"));
@@ -63,7 +63,9 @@ Section estimates_section(const ReportSources& sources) {
   char exceedance[32];
   std::snprintf(exceedance, sizeof exceedance, "%g", settings.exceedance);
   Table levels{"In \u00b5s: the time that an activation exceeds with probability " +
-                   std::string(exceedance) + ", extrapolated, if it is drawn like those seen.",
+                   std::string(exceedance) +
+                   ", extrapolated under the assumption that future values have the distribution "
+                   "of the observed ones.",
                {{"Series"},
                 {"Method"},
                 {"n", NumberKind::none, true},
@@ -73,8 +75,8 @@ Section estimates_section(const ReportSources& sources) {
                {}};
   Table tests{
       "Each assumption is tested twice at level " + p_text(settings.significance) +
-          "; one refusal is enough. The fit is made on the first half of the run and judged "
-          "on the second.",
+          "; one rejection suffices. The fit uses the first half of the run and is validated on "
+          "the second.",
       {{"Series"}, {"Method"}, {"Test"}, {"Assumption"}, {"p", NumberKind::none, true}, {"Result"}},
       {}};
   FigureGrid grid;
@@ -89,9 +91,8 @@ Section estimates_section(const ReportSources& sources) {
   if (!to_can.empty()) add_series("frame to CAN", to_can, settings, levels, tests, grid);
   section.blocks.push_back(levels);
   if (!grid.figures.empty()) {
-    section.blocks.push_back(Sentence{
-        "The half that was not fitted, over what the fit says it should be: on the line where both "
-        "agree."});
+    section.blocks.push_back(
+        Sentence{"The validation half over the fit's quantiles. Points on the line: both agree."});
     section.blocks.push_back(grid);
   }
   if (!tests.rows.empty()) section.blocks.push_back(tests);

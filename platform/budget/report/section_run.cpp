@@ -58,7 +58,7 @@ GanttStrip run_strip(const TraceFile& trace, std::size_t group, const Activation
 }  // namespace
 
 Section schedule_section(const ReportSources& sources) {
-  Section section{"schedule", "The plan, and what a run made of it", {}};
+  Section section{"schedule", "The plan and its run", {}};
   if (!sources.check)
     section.blocks.push_back(missing_input("--check F", "glint budget check --json F"));
   if (!sources.trace) section.blocks.push_back(missing_input("--run DIR", k_run_command));
@@ -90,8 +90,8 @@ Section schedule_section(const ReportSources& sources) {
     section.blocks.push_back(gantt_figure(
         "gantt-" + groups[g],
         "Group `" + groups[g] +
-            "`. Copies of a node share a shade; an outlined block overran or was delayed by "
-            "injection; thin frames are other groups' nodes on the same core.",
+            "`. Copies of a node share a shade. Outlined blocks overran or were delayed by "
+            "injection. Thin frames are other groups' nodes on the same core.",
         strips, deadline));
   }
   return section;
@@ -103,7 +103,7 @@ Section nodes_section(const ReportSources& sources) {
     section.blocks.push_back(missing_input("--run DIR", k_run_command));
     return section;
   }
-  Table table{"In \u00b5s, of the run. Preemption by other threads is in what is observed.",
+  Table table{"In \u00b5s, of the run. Observed times include preemption by other threads.",
               {{"Group"},
                {"Node"},
                {"Bound", NumberKind::bound, true},
@@ -130,16 +130,16 @@ Section nodes_section(const ReportSources& sources) {
                            node.above > 0 ? Tone::bad : Tone::plain}});
     grid.figures.push_back(histogram_figure(node));
   }
-  section.blocks.push_back(Sentence{
-      "Counts are drawn on a logarithmic scale, so that a single slow call among thousands is "
-      "visible; the line is the node's bound."});
+  section.blocks.push_back(
+      Sentence{"Counts have a logarithmic scale, so a single slow call among thousands is visible. "
+               "The line is the node's bound."});
   section.blocks.push_back(grid);
   section.blocks.push_back(table);
   return section;
 }
 
 Section worst_frames_section(const ReportSources& sources, std::size_t frames) {
-  Section section{"worst-frames", "The worst frames, and how to see them again", {}};
+  Section section{"worst-frames", "The worst frames, and their commands", {}};
   if (!sources.trace || sources.run.groups.empty()) {
     section.blocks.push_back(missing_input("--run DIR", k_run_command));
     return section;
@@ -156,7 +156,7 @@ Section worst_frames_section(const ReportSources& sources, std::size_t frames) {
                {"Response", NumberKind::observed, true},
                {"Frame to CAN", NumberKind::observed, true},
                {"Longest node"},
-               {"it took", NumberKind::observed, true},
+               {"its time", NumberKind::observed, true},
                {"Noticed"},
                {"Again"}},
               {}};
@@ -185,9 +185,9 @@ Section worst_frames_section(const ReportSources& sources, std::size_t frames) {
           " --out frame-" + std::to_string(a->frame) + ".pftrace`"}});
   }
   section.blocks.push_back(table);
-  section.blocks.push_back(Sentence{
-      "Each of these shows what ran about that frame, to open in ui.perfetto.dev. What was decided "
-      "at every frame, these among them, byte for byte:"});
+  section.blocks.push_back(
+      Sentence{"Each command exports the spans near that frame for ui.perfetto.dev. To replay "
+               "every frame, byte for byte:"});
   section.blocks.push_back(Command{"glint replay " + sources.run_folder + "/run.mcap"});
   return section;
 }

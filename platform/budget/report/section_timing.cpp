@@ -30,8 +30,8 @@ Shares shares_of(const JsonView& chain) {
 
 Table frame_to_can_observed(const JsonView& times) {
   Table table{
-      "Frame to CAN as the run saw it, in \u00b5s: the frame's last byte in memory to the "
-      "return of the CAN write that first carries its estimate.",
+      "Observed frame to CAN, in \u00b5s: from the frame's last byte in memory to the return of "
+      "the CAN write that first carries its estimate.",
       {{"Part"},
        {"n", NumberKind::none, true},
        {"p50", NumberKind::observed, true},
@@ -62,16 +62,15 @@ Section chains_section(const ReportSources& sources) {
     section.blocks.push_back(missing_input("--check F", k_check_command));
   } else {
     Table table{
-        "In \u00b5s. What the analysis computes, what a data sheet or the cell declares and what "
-        "was "
-        "measured stand apart; their sum is what the deadline is held against.",
+        "In \u00b5s. Computed, declared and measured parts have their own columns. The deadline "
+        "applies to their sum.",
         {{"Chain"},
          {"Computed", NumberKind::bound, true},
          {"Declared", NumberKind::none, true},
          {"Measured", NumberKind::estimate, true},
          {"Sum", NumberKind::none, true},
          {"Deadline", NumberKind::none, true},
-         {"Left of it", NumberKind::none, true},
+         {"Slack", NumberKind::none, true},
          {"May grow by", NumberKind::none, true},
          {"Max. reaction", NumberKind::bound, true},
          {"Max. data age", NumberKind::bound, true},
@@ -115,7 +114,7 @@ Section chains_section(const ReportSources& sources) {
 }
 
 Section slack_section(const ReportSources& sources) {
-  Section section{"slack", "Slack, and what may grow", {}};
+  Section section{"slack", "Slack", {}};
   if (!sources.check) {
     section.blocks.push_back(missing_input("--check F", k_check_command));
     return section;
@@ -133,14 +132,14 @@ Section slack_section(const ReportSources& sources) {
     add("group " + group.text("name"), group, "response_us");
   }
   section.blocks.push_back(
-      slack_figure("slack", "What every chain and group leaves of its deadline.", bars));
+      slack_figure("slack", "Slack of every chain and group to its deadline.", bars));
   std::string words = "All bounds together may grow by " +
                       percent_text(check.number_or_none("system_slack_percent")) +
-                      " before a deadline is missed; asked for: " +
+                      " before a deadline is missed; required: " +
                       percent_text(check.number_or("margin_percent", 0)) + ". ";
   if (check.has("break_even_clock")) {
     words += "Break-even clock: " + us_text(check.number("break_even_clock")) +
-             " of the one that the table was made at. ";
+             " of the table's clock. ";
   }
   if (check.has("largest")) {
     const JsonView largest = check.at("largest");
@@ -148,15 +147,14 @@ Section slack_section(const ReportSources& sources) {
              " searched pixels, or " + count_text(largest.number_or_none("tools")) + " tools.";
   }
   section.blocks.push_back(Sentence{words});
-  Table table{
-      "How far each node may grow, all others at their bounds, before a deadline is missed.",
-      {{"Group"},
-       {"Node"},
-       {"Core", NumberKind::none, true},
-       {"Bound, \u00b5s", NumberKind::bound, true},
-       {"This copy may grow by", NumberKind::none, true},
-       {"All its copies by", NumberKind::none, true}},
-      {}};
+  Table table{"Growth of each node before a deadline is missed, all others at their bounds.",
+              {{"Group"},
+               {"Node"},
+               {"Core", NumberKind::none, true},
+               {"Bound, \u00b5s", NumberKind::bound, true},
+               {"This copy may grow by", NumberKind::none, true},
+               {"All its copies by", NumberKind::none, true}},
+              {}};
   const std::vector<JsonView> nodes = check.list("nodes");
   for (const JsonView& node : nodes) {
     table.rows.push_back({{node.text("group")},
@@ -185,7 +183,7 @@ Section groups_section(const ReportSources& sources) {
        {"Blocking", NumberKind::bound, true},
        {"Response", NumberKind::bound, true},
        {"Deadline", NumberKind::none, true},
-       {"Left of it", NumberKind::none, true},
+       {"Slack", NumberKind::none, true},
        {"n", NumberKind::none, true},
        {"p50", NumberKind::observed, true},
        {"p99.9", NumberKind::observed, true},
@@ -233,7 +231,7 @@ Section can_section(const ReportSources& sources) {
                {"Identifier"},
                {"Response", NumberKind::bound, true},
                {"Deadline", NumberKind::none, true},
-               {"Left of it", NumberKind::none, true}},
+               {"Slack", NumberKind::none, true}},
               {}};
   for (const JsonView& message : sources.check->list("can")) {
     const double response = message.number_or_none("response_us");

@@ -102,7 +102,7 @@ void judge(const ReportSources& sources, Document& document) {
   std::size_t voids = 0;
   if (sources.check) {
     for (const JsonView& reason : sources.check->list("void")) {
-      reasons.push_back({"The bound is void: " + reason.as_text(), Tone::bad});
+      reasons.push_back({"The bound does not hold: " + reason.as_text(), Tone::bad});
       ++voids;
     }
   }
@@ -118,28 +118,26 @@ void judge(const ReportSources& sources, Document& document) {
   }
   if (voids > 0 && sources.check && sources.check->text_or("counter", "time") == "instructions") {
     reasons.push_back(
-        {"The table counts instructions and declares their price; the run was timed by a clock, "
-         "which sees caches, interrupts and preemption as well",
+        {"The table counts instructions at a declared time each; the run's clock also includes "
+         "caches, interrupts and preemption",
          Tone::plain});
   }
   const bool not_live = sources.summary && !sources.run_was_live();
   if (not_live) {
     reasons.push_back({"The run in " + sources.run_folder +
-                           " was not live: its latencies are nominal, no clock measured them; "
-                           "expected a run in real time (realtime = true, no --fast)",
+                           " was not live: its latencies are nominal, not measured; expected a run "
+                           "in real time (realtime = true, no --fast)",
                        Tone::bad});
   }
   const std::vector<std::string> best_effort = sources.best_effort();
   if (!best_effort.empty()) {
     reasons.push_back(
-        {"The run was best effort: the machine does not give what the bound assumes "
-         "(" +
+        {"The run was best effort: the machine does not meet the bound's assumptions (" +
              std::to_string(best_effort.size()) + " reasons below)",
          Tone::plain});
   }
   if (!sources.check) {
-    document.verdict_text =
-        "No checked plan was given, so nothing here says how late a pose can be.";
+    document.verdict_text = "No checked plan was given: this report has no latency bound.";
     return;
   }
   const std::vector<JsonView> fails = sources.check->list("fails");
@@ -150,38 +148,35 @@ void judge(const ReportSources& sources, Document& document) {
   } else if (voids > 0) {
     document.verdict = Verdict::invalid_bound;
     document.verdict_text =
-        "The computed bounds meet their deadlines, but reality contradicts what they stand on. "
-        "Until "
-        "that is explained they promise nothing.";
+        "The computed bounds meet their deadlines, but observations contradict their assumptions. "
+        "They do not hold until this is explained.";
   } else {
     document.verdict = Verdict::holds;
-    document.verdict_text =
-        "Every chain's bound meets its deadline with the margin asked for (" +
-        percent_text(sources.check->number_or("margin_percent", 0)) + ")" +
-        (observed > 0 ? ", and nothing observed lies above its bound."
-         : not_live   ? ". The run that was given was not live, so nothing was observed."
-                      : ". No run was given.");
+    document.verdict_text = "Every chain's bound meets its deadline with the required margin (" +
+                            percent_text(sources.check->number_or("margin_percent", 0)) + ")" +
+                            (observed > 0 ? ", and no observation lies above its bound."
+                             : not_live   ? ". The given run was not live: no observations."
+                                          : ". No run was given.");
   }
 }
 
 Section reading_section(const ReportSources& sources) {
   Section section{"reading", "How to read the numbers", {}};
   section.blocks.push_back(Table{
-      "Three kinds of number stand in columns of their own and are never added up unmarked.",
+      "Three kinds of number have their own columns. A sum of two kinds is marked.",
       {{"Kind"}, {"What it is"}, {"What it is not"}},
       {{{"\u25a0 bound"},
-        {"Loop counts of the code at their declared maximum, times the cost table of the board "
-         "that "
-         "is named, through the analysis of the plan. Holds before anything runs."},
-        {"Not stronger than its table: void when a node proves dearer than the table says."}},
+        {"Loop counts of the code at their declared maximum, times the cost table of the named "
+         "board, through the analysis of the plan. Holds before a run."},
+        {"Not stronger than its table: does not hold if a node costs more than its table entry."}},
        {{"\u25c6 estimate"},
-        {"A statistical statement about values not seen yet, or a share of the operating system "
-         "that was measured and cannot be computed."},
-        {"Not a guarantee; where its assumptions fail it is not given."}},
+        {"A statistical prediction of future values, or a measured share of the operating system "
+         "that cannot be computed."},
+        {"Not a guarantee; omitted if its assumptions fail."}},
        {{"\u25cf observed"},
-        {"What a clock or a counter showed: percentiles and the high-water mark, of n values."},
+        {"Readings of a clock or a counter: percentiles and the high-water mark of n values."},
         {"Never a worst case: the next value may be larger."}}}});
-  Table from{"Where they come from.", {{"Figures"}, {"Board"}, {"Build"}, {"Conditions"}}, {}};
+  Table from{"Sources.", {{"Figures"}, {"Board"}, {"Build"}, {"Conditions"}}, {}};
   for (const JsonView& measure : sources.measures) {
     from.rows.push_back(
         {{"costs, in " + measure.text_or("unit", measure.text_or("count", "?"))},
@@ -211,16 +206,15 @@ Section reading_section(const ReportSources& sources) {
 }
 
 Section timing_faults_section(const ReportSources& sources) {
-  Section section{"spoiled", "Best effort, and what is void", {}};
+  Section section{"spoiled", "Best effort, and bounds that do not hold", {}};
   if (sources.summary) {
     const std::vector<std::string> reasons = sources.best_effort();
     if (reasons.empty()) {
-      section.blocks.push_back(
-          Sentence{"The run found nothing on its machine that spoils times.", Tone::good});
+      section.blocks.push_back(Sentence{"The run's machine has no timing faults.", Tone::good});
     } else {
       Table table{
-          "What the run's machine does not give. Times observed there include it; the "
-          "bound does not.",
+          "Timing faults of the run's machine. Its observed times include them; the bound does "
+          "not.",
           {{"Best effort because"}},
           {}};
       for (const std::string& reason : reasons) table.rows.push_back({{reason}});
@@ -230,7 +224,7 @@ Section timing_faults_section(const ReportSources& sources) {
     section.blocks.push_back(
         missing_input("--run DIR", "glint run --out DIR --json DIR/summary.json"));
   }
-  Table table{"", {{"Void"}, {"Why"}}, {}};
+  Table table{"", {{"Bound"}, {"Why"}}, {}};
   if (sources.check) {
     for (const JsonView& reason : sources.check->list("void")) {
       table.rows.push_back({{"all bounds"}, {reason.as_text(), Tone::bad}});
@@ -240,7 +234,7 @@ Section timing_faults_section(const ReportSources& sources) {
     table.rows.push_back({{"bounds of chains through this node"}, {node, Tone::bad}});
   }
   if (table.rows.empty()) {
-    section.blocks.push_back(Sentence{"Nothing given here voids a bound.", Tone::plain});
+    section.blocks.push_back(Sentence{"No input of this report contradicts a bound.", Tone::plain});
   } else {
     section.blocks.push_back(table);
   }

@@ -83,8 +83,8 @@ std::string case_table(const CaseList& list) {
     table += "\n";
   }
   const int missed = missed_bars(list);
-  return table + (missed == 0 ? "every bar is met\n"
-                              : std::to_string(missed) + " figures miss their bar\n");
+  return table +
+         (missed == 0 ? "all bars met\n" : std::to_string(missed) + " figures miss their bar\n");
 }
 
 std::string case_json(const CaseList& list, const CaseOptions& options) {

@@ -36,8 +36,8 @@ Pose fitted(std::span<const Vector3> model, std::span<const Vector3> measured,
             const std::string& path) {
   const RigidFit fit = fit_rigid(model, measured);
   if (fit.reason == Reason::none) return fit.transform;
-  throw InputError(path + ": markers fix no pose (" + std::string(name_of(fit.reason)) +
-                   "); expected 3 or more that are not on a line");
+  throw InputError(path + ": markers determine no pose (" + std::string(name_of(fit.reason)) +
+                   "); expected 3 or more that are not collinear");
 }
 
 // Pointer poses from its markers. The first frame's markers, relative to their mean, are the
@@ -195,8 +195,8 @@ CaseList run_cis_pivot(const CaseOptions& options) {
   run_problem_3(folder + "/pa3", list);
   if (list.cases.empty()) {
     throw InputError(options.data +
-                     ": no case with its answer; expected pa1/*-empivot.txt beside "
-                     "*-output1.txt, or pa3/*-SampleReadingsTest.txt beside *-Answer.txt");
+                     ": no case with an answer; expected pa1/*-empivot.txt beside *-output1.txt, "
+                     "or pa3/*-SampleReadingsTest.txt beside *-Answer.txt");
   }
   return list;
 }

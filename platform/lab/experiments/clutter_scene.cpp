@@ -82,7 +82,7 @@ void rename(Tool& tool, const std::string& name) {
 }
 
 void prepare(Tool& tool) {
-  if (prepare_tool(tool) != Reason::none) throw std::logic_error("clutter: a tool is none");
+  if (prepare_tool(tool) != Reason::none) throw std::logic_error("clutter: invalid tool");
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ ToolSet nearly_equal_tools(double sigmas) {
       apart = apart && labeling.seen == labeling.other;
     if (apart) return tools;
   }
-  throw std::logic_error("clutter: no shift tells the two tools apart");
+  throw std::logic_error("clutter: no shift separates the two tools");
 }
 
 sim::Scenario cluttered_run(const ToolSet& tools, int strays, int frames, std::uint64_t seed) {

@@ -104,7 +104,8 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
   const Tool tool = runs.front().scenario.tools.front().tool;
   const sim::ReferenceSettings& judge = runs.front().scenario.reference;
   MethodRecord seed("seed", tool, judge), glint("glint", tool, judge),
-      referenced("glint, held to a board", tool, judge), perfect("a perfect tracker", tool, judge);
+      referenced("glint with a reference body", tool, judge),
+      perfect("a perfect tracker", tool, judge);
   sim::SimFrame frame, with_reference_body;
   for (const ExperimentRun& run : runs) {
     const sim::Simulator simulator(run.scenario), reference_simulator(with_reference(run.scenario));

@@ -123,7 +123,7 @@ std::string experiment_table(const ExperimentResult& result) {
                      ", parameters " + result.config_hash + '\n';
   char heading[128];
   std::snprintf(heading, sizeof heading, "  %-34s %12s %12s %12s %12s %12s\n", "", "published",
-                "seed here", "Glint here", "with board", "perfect");
+                "baseline", "Glint", "with body", "perfect");
   text += heading;
   const auto block = [&](const char* unit, ErrorColumn MethodFigures::*column, double mean_abs,
                          const std::optional<double>& sd, const std::optional<double>& median) {
@@ -166,7 +166,8 @@ std::string experiment_table(const ExperimentResult& result) {
               0);
   const ExperimentBars bars = bars_of(result.kind);
   char bar[128];
-  std::snprintf(bar, sizeof bar, "  bars with the board: %.1f mm, %.1f deg mean absolute: %s\n",
+  std::snprintf(bar, sizeof bar,
+                "  bars with the reference body: %.1f mm, %.1f deg mean absolute: %s\n",
                 bars.position_mm, bars.angle_deg, missed_bars(result) == 0 ? "met" : "MISSED");
   text += bar;
   text +=
@@ -176,7 +177,7 @@ std::string experiment_table(const ExperimentResult& result) {
       "one\n"
       "  thread of this machine; published: of the whole application on a HoloLens 1. Perfect: "
       "the\n"
-      "  true pose before the camera, put into the headset's world: what its drift alone does.\n";
+      "  true pose before the camera, in the headset's world: the effect of drift alone.\n";
   return text;
 }
 

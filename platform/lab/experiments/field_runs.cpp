@@ -46,7 +46,7 @@ const FieldRun& FinishedRuns::add(const FieldRun& run) {
         << errors->stated_m2 << ' ' << errors->stated_rad2 << ' ' << errors->log_score;
   out << " end";
   out.flush();
-  if (!out) throw InputError(path_ + ": cannot be written; expected room for a finished run");
+  if (!out) throw InputError(path_ + ": cannot be written; expected free space for a finished run");
   return runs_.emplace_back(run);
 }
 

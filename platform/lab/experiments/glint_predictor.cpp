@@ -7,7 +7,7 @@ namespace glint {
 GlintPredictor::GlintPredictor(const ToolMotionSettings& settings) {
   motion_.settings = settings;
   if (integrator_.prepare(settings.motion) != Reason::none)
-    throw std::runtime_error("SUNDIALS could not be prepared: no memory");
+    throw std::runtime_error("SUNDIALS cannot be prepared: no memory");
 }
 
 void GlintPredictor::update(const UncertainPose& measured) {

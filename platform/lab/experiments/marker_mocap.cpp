@@ -42,7 +42,7 @@ Tool published_probe(const std::string& path) {
   }
   if (prepare_tool(tool) == Reason::none) return tool;
   throw InputError(path + ": " + std::to_string(tool.marker_count) +
-                   " markers; expected rows Probe1,x,y,z .. of 3 or more that fix a pose");
+                   " markers; expected rows Probe1,x,y,z .. of 3 or more that determine a pose");
 }
 
 // The trial's probe markers without labels, in random order in each frame.
@@ -90,7 +90,7 @@ Overlay overlay(const Tool& published, const Tool& found, const std::string& wha
   propose_labelings(markers_from_points(markers), as_points(published), settings_for_points(),
                     nullptr, *scratch, *labelings);
   if (labelings->count == 0) {
-    throw InputError(what + ": the found markers are not the published probe's");
+    throw InputError(what + ": the found markers differ from the published probe");
   }
   Overlay result{labelings->items[0], {}};
   for (int i = 0; i < published.marker_count; ++i) {

@@ -57,7 +57,7 @@ class MotionChain {
   MotionChain(const RatesRun& run, const Tool& tool) : run_(run) {
     motion_.settings = EstimatorSettings{}.motion;
     if (integrator_.prepare(motion_.settings.motion) != Reason::none)
-      throw std::runtime_error("SUNDIALS could not be prepared: no memory");
+      throw std::runtime_error("SUNDIALS cannot be prepared: no memory");
     model_.assign(tool.markers_m.begin(), tool.markers_m.begin() + tool.marker_count);
   }
 

@@ -204,7 +204,8 @@ CaseList run_reference_tries(const CaseOptions& options) {
     if (finished[static_cast<std::size_t>(number)]) continue;
     tries.push_back(run_try(all, options.seed, number));
     file << try_line(tries.back()) << std::flush;
-    if (!file) throw InputError(path + ": cannot be written; expected a folder with room");
+    if (!file)
+      throw InputError(path + ": cannot be written; expected a writable folder with free space");
     if (options.progress) options.progress(static_cast<int>(tries.size()), options.tries);
   }
   CaseList list = count_tries(tries);

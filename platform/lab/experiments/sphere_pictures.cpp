@@ -24,7 +24,7 @@ SphereSetting centred(SphereSetting setting) {
   const SineCosine off = sine_cosine(setting.off_axis_rad), round = sine_cosine(k_azimuth_rad);
   const Vector3 ray(off.sine * round.cosine, off.sine * round.sine, off.cosine);
   const Result<Vector2> pixel = project(model, ray);
-  if (!pixel) throw std::invalid_argument("the lens does not reach the angle asked for");
+  if (!pixel) throw std::invalid_argument("the angle is outside the lens");
   model.cx += k_side_px / 2 - pixel.value.x();
   model.cy += k_side_px / 2 - pixel.value.y();
   model.width = model.height = k_side_px;

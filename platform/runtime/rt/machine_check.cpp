@@ -51,13 +51,13 @@ class Check {
   MachineCheck run() {
     found_.preempt_rt = line_of(root_ / "sys/kernel/realtime").value_or("0") == "1";
     if (!found_.preempt_rt) {
-      add("kernel without PREEMPT_RT: a wake-up may wait for the kernel; boot one with it "
-          "(Debian: linux-image-rt)");
+      add("kernel without PREEMPT_RT: wake-ups may be late; boot a PREEMPT_RT kernel (Debian: "
+          "linux-image-rt)");
     }
     throttling();
     rights();
     if (cores_.empty()) {
-      add("threads are not pinned: they may be moved while they run; give a plan (--plan)");
+      add("threads are not pinned: they may migrate; set a plan (--plan)");
     }
     governors();
     idle_states();
@@ -74,7 +74,7 @@ class Check {
     const std::string period =
         line_of(root_ / "proc/sys/kernel/sched_rt_period_us").value_or("1000000");
     add("RT throttling: real-time threads stop after " + *runtime + " of every " + period +
-        " us; sysctl -w kernel.sched_rt_runtime_us=-1");
+        " us; run sysctl -w kernel.sched_rt_runtime_us=-1");
   }
 
   void rights() {
@@ -95,13 +95,13 @@ class Check {
       };
       const auto priority = soft_limit("Max realtime priority");
       if (priority && *priority == "0" && (capabilities >> k_cap_sys_nice & 1u) == 0) {
-        add("no right to SCHED_FIFO (RLIMIT_RTPRIO 0): any process may delay us; rtprio 90 in "
-            "/etc/security/limits.conf, or CAP_SYS_NICE");
+        add("no permission for SCHED_FIFO (RLIMIT_RTPRIO 0): any process may delay the run; set "
+            "rtprio 90 in /etc/security/limits.conf, or CAP_SYS_NICE");
       }
       const auto locked = soft_limit("Max locked memory");
       if (locked && *locked != "unlimited" && (capabilities >> k_cap_ipc_lock & 1u) == 0) {
         add("memory cannot be locked (RLIMIT_MEMLOCK " + *locked +
-            "): pages may be fetched while we run; memlock unlimited in "
+            "): page faults may occur during the run; set memlock unlimited in "
             "/etc/security/limits.conf, or CAP_IPC_LOCK");
       }
     }
@@ -121,7 +121,7 @@ class Check {
       const auto governor = line_of(folder_of(core) / "cpufreq/scaling_governor");
       if (!governor || *governor == "performance") continue;
       add("core " + std::to_string(core) + " has the governor \"" + *governor +
-          "\": its clock may be low when a frame comes; cpupower frequency-set -g performance");
+          "\": its clock may be low at a frame; run cpupower frequency-set -g performance");
     }
   }
 
@@ -136,8 +136,8 @@ class Check {
         slowest_us = std::max(slowest_us, std::strtol(exit_us->c_str(), nullptr, 10));
       }
       if (slowest_us <= k_idle_exit_us) continue;
-      add("core " + std::to_string(core) + " may idle so deeply that it wakes in " +
-          std::to_string(slowest_us) + " us; cpupower idle-set -D " +
+      add("core " + std::to_string(core) + " may enter an idle state with a wake-up time of " +
+          std::to_string(slowest_us) + " us; run cpupower idle-set -D " +
           std::to_string(k_idle_exit_us));
     }
   }
@@ -156,7 +156,7 @@ class Check {
     }
     if (served == 0) return;
     add(std::to_string(served) +
-        " interrupts are served by our cores; write the other cores to "
+        " interrupts run on the cores of the plan; write the other cores to "
         "/proc/irq/*/smp_affinity_list, or boot with isolcpus and irqaffinity");
   }
 

@@ -19,8 +19,8 @@ struct Tick {
 
 // Message of a run that stopped for this reason.
 inline constexpr const char* k_no_sleep_message =
-    "ticks: the system does not let the loop sleep until its next tick; the run stopped there, "
-    "expected a clock that can be slept by";
+    "ticks: the sleep until the next tick failed and the run stopped; expected a working "
+    "CLOCK_MONOTONIC sleep";
 
 class PeriodicLoop {
  public:

@@ -13,7 +13,7 @@ namespace glint {
     const std::size_t colon = line.find(": ");
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
-  return "a processor without a name";
+  return "unnamed processor";
 }
 
 }  // namespace glint

@@ -58,7 +58,7 @@ std::string TraceWriter::close() {
   failed_ = std::fclose(file_) != 0 || failed_;
   failed_ = std::rename(part_path_.c_str(), path_.c_str()) != 0 || failed_;
   file_ = nullptr;
-  return failed_ ? path_ + ": not all of it could be written" : std::string{};
+  return failed_ ? path_ + ": written incompletely" : std::string{};
 }
 
 }  // namespace glint

@@ -106,7 +106,7 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupSchedule<Backgroun
   if (const graph::Prepared ready = graph_.prepare(); !ready) {
     throw InputError(cell.file +
                      ": mapping: " + std::string(name_of(static_cast<Reason>(ready.reason))) +
-                     "; expected sizes that a map can have");
+                     "; expected valid map sizes");
   }
 }
 

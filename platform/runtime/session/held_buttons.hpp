@@ -20,7 +20,7 @@ namespace glint {
 }
 static_assert(static_cast<int>(Button::draw) == 0 && static_cast<int>(Button::delete_last) == 1 &&
                   static_cast<int>(Button::undo) == 2,
-              "PoseSample::buttons says them in this order");
+              "PoseSample::buttons has this order");
 
 class HeldButtons {
  public:

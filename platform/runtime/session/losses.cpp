@@ -33,7 +33,7 @@ class Losses {
 void add_can(const CanSinkCounts& can, Losses& losses) {
   if (can.dropped > 0) {
     losses.add(LossKind::can, can.dropped,
-               counted(can.dropped, "frames found the queue full: the bus or the disk is slow"));
+               counted(can.dropped, "frames dropped, queue full: the bus or the disk is too slow"));
   }
   if (can.failed > 0) {
     losses.add(LossKind::can, can.failed,
@@ -46,7 +46,7 @@ void add_dds(const SinkOutcome& outcome, Losses& losses) {
   const DdsCounts& dds = outcome.dds;
   if (dds.ring_dropped > 0) {
     losses.add(LossKind::dds, dds.ring_dropped,
-               counted(dds.ring_dropped, "samples not written: no room, or refused by DDS"));
+               counted(dds.ring_dropped, "samples not written: queue full, or refused by DDS"));
   }
   if (dds.poses_and_transforms_lost > 0) {
     losses.add(LossKind::dds, dds.poses_and_transforms_lost,
@@ -54,17 +54,17 @@ void add_dds(const SinkOutcome& outcome, Losses& losses) {
   }
   if (outcome.dds_was_read && outcome.dds_reader.missed > 0) {
     losses.add(LossKind::dds, outcome.dds_reader.missed,
-               counted(outcome.dds_reader.missed, "samples written, but not received"));
+               counted(outcome.dds_reader.missed, "samples written but not received"));
   }
   if (!outcome.dds_reader_error.empty()) {
-    losses.add(LossKind::dds, 0, "what was received is unknown: " + outcome.dds_reader_error);
+    losses.add(LossKind::dds, 0, "received count unknown: " + outcome.dds_reader_error);
   }
 }
 
 void add_recording(const RecordingOutcome& recording, Losses& losses) {
   if (recording.dropped > 0) {
     losses.add(LossKind::recording, recording.dropped,
-               counted(recording.dropped, "messages found no room in the queue"));
+               counted(recording.dropped, "messages dropped, queue full"));
   }
   if (recording.ended_early) {
     losses.add(LossKind::recording, recording.lost,
@@ -80,8 +80,7 @@ std::vector<Loss> losses_of(const SinkOutcome& outcome) {
   add_dds(outcome, losses);
   add_recording(outcome.recording, losses);
   if (outcome.files_lost > 0 || !outcome.files_error.empty()) {
-    const std::string why =
-        outcome.files_error.empty() ? "no room in the queue" : cause(outcome.files_error);
+    const std::string why = outcome.files_error.empty() ? "queue full" : cause(outcome.files_error);
     losses.add(LossKind::files, outcome.files_lost,
                counted(outcome.files_lost, "lines not written: ") + why);
   }

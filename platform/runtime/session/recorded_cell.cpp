@@ -82,7 +82,7 @@ ToolSet tools_from_json(std::string_view text, const std::string& path) {
     return tools_of(json::parse(text.begin(), text.end()), path);
   } catch (const json::exception& error) {
     throw InputError(path + ": attachment tools.json: " + error.what() +
-                     "; expected the tools that `glint run` put there");
+                     "; expected the tools that `glint run` records");
   }
 }
 

@@ -135,9 +135,9 @@ ReplayResult replay(const std::string& file, const ReplayOptions& options) {
     recompute<Tracker>(cell, reader, options, result);
   }
   if (result.records == 0 && result.records_recorded == 0)
-    throw InputError(file + ": nothing to replay: " + std::to_string(result.frames) +
+    throw InputError(file + ": no output to replay: " + std::to_string(result.frames) +
                      " frames and " + std::to_string(result.ticks) +
-                     " ticks, but no output record; expected a recording of a run with ticks");
+                     " ticks without output records; expected a recording of a run with ticks");
   return result;
 }
 

@@ -64,10 +64,10 @@ GroupSchedule<G> group_plan(const Plan& plan, const TaskModel& model, int group,
         fault.node >= 0
             ? name_of_node(graph::Description<G>::nodes[static_cast<std::size_t>(fault.node)])
             : "a node";
-    throw InputError(file + ": group \"" + plan.groups.at(g).name + "\": " + node +
-                     " cannot run where the plan has it; expected every node once, after the data "
-                     "that it reads, on at most " +
-                     std::to_string(graph::k_plan_workers_max) + " cores");
+    throw InputError(
+        file + ": group \"" + plan.groups.at(g).name + "\": " + node +
+        " cannot run as planned; expected every node once, after its inputs, on at most " +
+        std::to_string(graph::k_plan_workers_max) + " cores");
   }
   return result;
 }

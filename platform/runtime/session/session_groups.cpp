@@ -13,9 +13,7 @@ namespace {
 std::unique_ptr<FrameMethod> method_of(const Cell& cell, const SessionOptions& options) {
   if (cell.method == Method::glint) return nullptr;
   if (options.method) return options.method(cell);
-  throw InputError(cell.file +
-                   ": method is \"seed\", which this program does not have; expected "
-                   "\"glint\"");
+  throw InputError(cell.file + ": method is \"seed\": not in this program; expected \"glint\"");
 }
 
 template <class G>

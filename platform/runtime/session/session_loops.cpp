@@ -48,29 +48,29 @@ void print_robot_warnings(const SessionGroups& groups, PrintedRobotWarnings& pri
   if (background == nullptr) return;
   if (!printed.jumped && background->jumps() > 0) {
     printed.jumped = true;
-    std::fprintf(stderr,
-                 "the robot is seen where no drift takes it: refused; the run goes on from where "
-                 "it was\n");
+    std::fprintf(
+        stderr,
+        "robot detected farther away than drift explains: rejected, the last pose stays in use\n");
   }
   if (const std::string* const joint = background->missing_joint(); joint && !printed.lacking) {
     printed.lacking = true;
-    std::fprintf(stderr,
-                 "%s: a state without a position of joint '%s': its model stays where it was\n",
-                 k_joint_states_topic, joint->c_str());
+    std::fprintf(
+        stderr,
+        "%s: a state without a position of joint '%s': ignored, the last joints stay in use\n",
+        k_joint_states_topic, joint->c_str());
   }
   if (const Reason reason = background->unusable_joints();
       reason != Reason::none && !printed.unusable) {
     printed.unusable = true;
     std::fprintf(stderr,
-                 "%s: a state that cannot pose the robot: %s; expected positions of at most %.0e "
-                 "rad or m: its model stays where it was\n",
+                 "%s: an invalid state: %s; expected positions of at most %.0e rad or m: ignored\n",
                  k_joint_states_topic, std::string(name_of(reason)).c_str(), k_joint_position_max);
   }
   if (!printed.lost && background->without_joints() > 0) {
     printed.lost = true;
     std::fprintf(stderr,
-                 "%s: nothing for longer than mapping.joints_lost_after_ms: the robot is not "
-                 "followed until it is heard again\n",
+                 "%s: no state for longer than mapping.joints_lost_after_ms: the robot is not "
+                 "tracked until the next one\n",
                  k_joint_states_topic);
   }
 }

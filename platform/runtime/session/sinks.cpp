@@ -106,7 +106,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     }
     if (buttons_ == nullptr) {
       can_receive_error_ = std::string("can.buttons: ") +
-                           (cell.realtime ? cell.can.sink + " is no bus" : "not in real time") +
+                           (cell.realtime ? cell.can.sink + " is not a bus" : "not in real time") +
                            "; expected socketcan:IF in real time";
     }
   }
@@ -135,8 +135,8 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     inputs_->start();
     dds_->start();
     if (reader_ != nullptr && !dds_->wait_for_readers(1, k_reader_limit)) {
-      throw MissingDevice("the DDS reader did not find the topics on interface " +
-                          cell.dds.interface + "; expected it within 10 s");
+      throw MissingDevice("the DDS reader found no topics on interface " + cell.dds.interface +
+                          "; expected them within 10 s");
     }
   }
 }

@@ -23,7 +23,7 @@ LineFile::LineFile(std::filesystem::path file) : file_(std::move(file)), written
   }
   if (descriptor_ < 0)
     throw InputError(file_.string() + ": cannot be written: " + std::strerror(errno) +
-                     "; expected a place for a log");
+                     "; expected a writable path");
 }
 
 LineFile::~LineFile() {

@@ -22,7 +22,7 @@ void require(int socket, const std::string& interface, CanFormat format) {
   ifreq request{};
   interface.copy(request.ifr_name, IFNAMSIZ - 1);
   if (::ioctl(socket, SIOCGIFFLAGS, &request) != 0)
-    missing(interface, std::string("cannot be asked: ") + std::strerror(errno));
+    missing(interface, std::string("cannot be queried: ") + std::strerror(errno));
   if ((request.ifr_flags & IFF_UP) == 0)
     missing(interface, "is down; expected up (ip link set " + interface + " up)");
   if (format != CanFormat::fd) return;

@@ -108,17 +108,18 @@ void Diagnostics::add_robot(const RobotTrackingStatus& robot) {
   if (robot.jumped.load(std::memory_order_relaxed)) {
     char text[160];
     std::snprintf(text, sizeof text,
-                  "seen %.1f mm and %.1f deg from where it is taken to be, refused: stop, look "
-                  "what moved, and find it anew (glint reference)",
+                  "detected %.1f mm and %.1f deg from its stored pose, rejected; stop, check what "
+                  "moved, run glint reference",
                   shift_mm, turn_deg);
     warning = text;
   }
   if (robot.joints_lost.load(std::memory_order_relaxed)) {
     warning += warning.empty() ? "" : "; ";
-    warning += "not followed: no joint states for too long; see to the robot's driver";
+    warning += "not tracked: joint states are too old; check the robot's driver";
   }
   if (warning.empty()) {
-    add_entry(k_ok, keep("glint: robot"), keep(followed > 0 ? "followed" : "not yet seen"), values);
+    add_entry(k_ok, keep("glint: robot"), keep(followed > 0 ? "followed" : "not yet detected"),
+              values);
   } else {
     add_entry(k_warn, keep("glint: robot"), keep(warning), values);
   }
@@ -145,7 +146,7 @@ void Diagnostics::add_calibration(const std::vector<CalibrationFinding>& finding
     values.push_back({keep(key + std::string(name_of(finding.source))), keep(text)});
     if (finding.exceeds_stated) warning += (warning.empty() ? "" : "; ") + text;
   }
-  const char* const fine = findings.empty() ? "too little seen" : "as stated";
+  const char* const fine = findings.empty() ? "too few data" : "as stated";
   add_entry(warning.empty() ? k_ok : k_warn, keep("glint: calibration"),
             keep(warning.empty() ? fine : warning), values);
 }

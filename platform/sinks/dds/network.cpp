@@ -58,7 +58,7 @@ void require_network_interface(const std::string& name) {
   if (names.contains(name)) return;
   std::string known;
   for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
-  throw MissingDevice("dds.interface: there is no network interface \"" + name +
+  throw MissingDevice("dds.interface: no network interface \"" + name +
                       "\" that is up with an IPv4 address; expected one of: " +
                       (known.empty() ? "none is up" : known));
 }

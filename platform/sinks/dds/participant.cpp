@@ -78,13 +78,14 @@ std::shared_ptr<Participant::Domain> Participant::domain_of(const DdsSettings& s
                             " on interface " + settings.interface;
   std::shared_ptr<Domain> domain = open[settings.domain].lock();
   if (domain != nullptr && domain->configuration != configuration) {
-    throw InputError(where + ": this process is in it by another; expected the same for both");
+    throw InputError(where +
+                     ": this process uses another interface for it; expected one interface");
   }
   if (domain != nullptr) return domain;
   domain = std::make_shared<Domain>(static_cast<dds_domainid_t>(settings.domain), configuration);
   if (domain->entity < 0) {
     throw InputError(where + ": " + dds_strretcode(-domain->entity) +
-                     "; expected one that this process has not yet opened");
+                     "; expected a domain that this process has not opened");
   }
   open[settings.domain] = domain;
   return domain;

@@ -34,7 +34,7 @@ void check(const DdsSettings& settings) {
   std::set<std::string> names;
   for (const std::string& name : settings.tool_names) {
     if (!names.insert(ros_name(name)).second) {
-      throw InputError("dds: found two tools whose topics would be named '" + ros_name(name) +
+      throw InputError("dds: two tools have the topic name '" + ros_name(name) +
                        "'; expected names that differ in letters, digits or '_'");
     }
   }

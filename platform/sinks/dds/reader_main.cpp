@@ -46,17 +46,17 @@ int main(int argc, char** argv) {
   std::string out;
   double search_s = 30;
   CLI::App app{
-      "Reads a Glint sink's topics and counts what came and what did not.\n"
+      "Reads a Glint sink's topics and counts received and missed samples.\n"
       "Example: glint_dds_reader --interface lo --tool pen --out reader.json"};
   app.add_option("--interface", settings.interface, "network interface")->capture_default_str();
   app.add_option("--domain", settings.domain, "DDS domain, ROS_DOMAIN_ID")->capture_default_str();
-  app.add_option("--prefix", settings.topic_prefix, "of the topics")->capture_default_str();
-  app.add_option("--tool", settings.tool_names, "tool name; may be repeated")->expected(1, 16);
-  app.add_option("--peer", settings.peers, "address to look for the sink at; may be repeated");
-  app.add_option("--search", search_s, "seconds to look for a sink")
+  app.add_option("--prefix", settings.topic_prefix, "prefix of the topics")->capture_default_str();
+  app.add_option("--tool", settings.tool_names, "tool name; repeatable")->expected(1, 16);
+  app.add_option("--peer", settings.peers, "address of the sink; repeatable");
+  app.add_option("--search", search_s, "seconds to search for a sink")
       ->capture_default_str()
       ->check(glint::in_range(0.0, 86400.0));
-  app.add_option("--out", out, "JSON file for the result")->required();
+  app.add_option("--out", out, "JSON file of the result")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

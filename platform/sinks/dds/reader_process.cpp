@@ -81,7 +81,7 @@ ReaderProcess::ReaderProcess(const DdsSettings& settings, const std::string& res
   if (code != 0) {
     id_ = -1;
     throw MissingDevice("dds: cannot start " + arguments[0] + ": " + std::strerror(code) +
-                        "; expected the reader's program beside this one");
+                        "; expected glint_dds_reader beside this program");
   }
 }
 

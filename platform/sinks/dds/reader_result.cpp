@@ -24,7 +24,7 @@ void save_result(const ReaderResult& result, const std::string& file) {
   if (const std::string reason = write_file_atomically(file, json.dump(2) + "\n");
       !reason.empty()) {
     throw InputError(file + ": cannot be written: " + reason +
-                     "; expected a folder with room and the right to");
+                     "; expected a writable folder with free space");
   }
 }
 

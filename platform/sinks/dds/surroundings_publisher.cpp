@@ -96,7 +96,7 @@ void MapPublisher::publish_octomap(std::span<const std::int8_t> data, double res
                                    Time unix_time) {
   if (data.size() + k_heading_bytes > k_message_bytes_max) {
     throw InputError("octomap: " + std::to_string(data.size()) +
-                     " bytes; expected at most 16 MiB in one message: a coarser resolution");
+                     " bytes; expected at most 16 MiB in one message: set a coarser resolution");
   }
   const dds_entity_t writer =
       add_writer(octomap_type(), topic_under(settings_.topic_prefix, k_octomap_name), 1);

@@ -23,13 +23,13 @@ constexpr std::size_t k_piece_bytes = std::size_t{64} << 10;
 }  // namespace
 
 GrowingFile::GrowingFile(std::string path) : path_(std::move(path)) {
-  if (is_special_file(path_)) throw InputError(path_ + ": a device; expected a file's name");
+  if (is_special_file(path_)) throw InputError(path_ + ": a device; expected a regular file");
   PartFile part = open_part_file(path_);
   part_path_ = std::move(part.path);
   descriptor_ = part.descriptor;
   if (descriptor_ >= 0) return;
   fail("open", errno);
-  throw InputError(error_ + "; expected a folder that can be written");
+  throw InputError(error_ + "; expected a writable folder");
 }
 
 GrowingFile::~GrowingFile() {

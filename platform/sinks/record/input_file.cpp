@@ -32,9 +32,8 @@ void InputFile::read(std::uint64_t offset, std::uint64_t count, Bytes& bytes) co
     const ssize_t got =
         ::pread(descriptor_, bytes.data() + done, count - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0)
-      refuse(offset + done, std::generic_category().message(errno), "a file that can be read");
-    if (got == 0) refuse(offset + done, "the file ends", "as many bytes as it had when opened");
+    if (got < 0) refuse(offset + done, std::generic_category().message(errno), "a readable file");
+    if (got == 0) refuse(offset + done, "the file ends", "the size at opening");
     done += static_cast<std::size_t>(got);
   }
 }

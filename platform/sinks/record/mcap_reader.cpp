@@ -29,7 +29,7 @@ McapReader::Heading McapReader::heading_at(std::uint64_t offset, std::uint64_t e
   if (kind == 0 || length > end - offset - k_mcap_heading_bytes || length > k_mcap_record_bytes_max)
     file_.refuse(offset, kind_and_length(kind, length),
                  "a record within the " + std::to_string(end - offset - k_mcap_heading_bytes) +
-                     " bytes that follow, and at most " + std::to_string(k_mcap_record_bytes_max));
+                     " remaining bytes, and at most " + std::to_string(k_mcap_record_bytes_max));
   return {static_cast<McapKind>(kind), length};
 }
 
@@ -64,7 +64,7 @@ bool McapReader::open_record() {
   if (known != indexed_records_.end() &&
       (known->second.kind != heading.kind || known->second.length != record_bytes))
     file_.refuse(at_, kind_and_length(static_cast<std::uint64_t>(heading.kind), heading.bytes),
-                 "the record that the index has here; the file is damaged here");
+                 "the record of the index; the file is damaged here");
   file_.read(at_, record_bytes, record_);
   at_ += record_bytes;
   if (heading.kind != McapKind::data_end) crc_ = crc32(crc_, record_);
@@ -87,7 +87,7 @@ void McapReader::open_chunk(std::uint64_t offset) {
       compressed_ = compressed_ || (known && decoder_ == nullptr);
       file_.refuse(offset, "a chunk compressed with '" + heading.compression.substr(0, 16) + "'",
                    decoder_ == nullptr ? "chunks without compression, as Glint writes them"
-                   : known             ? "one that is whole; the file is damaged here"
+                   : known             ? "a complete one; the file is damaged here"
                                        : "zstd, lz4 or none");
     }
     records = decoded_;
@@ -96,7 +96,7 @@ void McapReader::open_chunk(std::uint64_t offset) {
   if (heading.crc != 0 && heading.crc != crc)
     file_.refuse(offset, "a chunk with checksum " + std::to_string(crc),
                  std::to_string(heading.crc) +
-                     "; the file is damaged here; --allow-truncated reads all but this chunk");
+                     "; the file is damaged here; --allow-truncated reads the other chunks");
   chunk_.emplace(records);
 }
 
@@ -107,7 +107,7 @@ std::optional<McapMessage> McapReader::message(ByteReader& content) {
   const auto channel = channels_.find(found.heading.channel_id);
   if (channel == channels_.end())
     file_.refuse(record_at_, "a message of channel " + std::to_string(found.heading.channel_id),
-                 "one of a channel described before");
+                 "one of a previously described channel");
   found.channel = &channel->second;
   const auto schema = schemas_.find(found.channel->schema_id);
   found.schema = schema == schemas_.end() ? nullptr : &schema->second;
@@ -140,10 +140,10 @@ void McapReader::check_end(std::uint64_t offset) {
   if (content.failed()) refuse_content(offset, "data end");
   if (expected != 0 && expected != crc_)
     file_.refuse(offset, "records with checksum " + std::to_string(crc_),
-                 std::to_string(expected) + "; the file is damaged before this place");
+                 std::to_string(expected) + "; the file is damaged before this byte");
   if (statistics_ && statistics_->messages != messages_)
     file_.refuse(offset, std::to_string(messages_) + " messages",
-                 std::to_string(statistics_->messages) + ", as its statistics say");
+                 std::to_string(statistics_->messages) + ", by its statistics");
   at_ = data_end_;
 }
 

@@ -12,15 +12,15 @@ McapReader::McapReader(const std::string& path, McapEnding ending, ChunkDecoder 
   Bytes magic;
   file_.read(0, std::min<std::uint64_t>(file_.size(), k_mcap_magic.size()), magic);
   if (!std::equal(magic.begin(), magic.end(), k_mcap_magic.begin(), k_mcap_magic.end()))
-    file_.refuse(0, magic.empty() ? "an empty file" : "another kind of file",
+    file_.refuse(0, magic.empty() ? "an empty file" : "another file format",
                  "the first bytes of an MCAP file, 89 4D 43 41 50 30 0D 0A");
   crc_ = crc32(0, magic);
   at_ = k_mcap_magic.size();
   has_ending_ = find_ending();
   if (!has_ending_) {
     if (ending == McapEnding::required)
-      file_.refuse(file_.size(), "the file ends without its index: it was cut short",
-                   "a recording that was closed; --allow-truncated reads what is whole");
+      file_.refuse(file_.size(), "the file ends without its index: truncated",
+                   "a closed recording; --allow-truncated reads its complete part");
     scan_complete_records();
   }
   read_header();
@@ -73,7 +73,8 @@ bool McapReader::read_ending() {
   if (start == 0)
     file_.refuse(footer_at, "a file without an index", "an index, as every recording of Glint has");
   if (start < k_mcap_magic.size() || start > footer_at)
-    file_.refuse(footer_at, "an index at byte " + std::to_string(start), "one inside the file");
+    file_.refuse(footer_at, "an index at byte " + std::to_string(start),
+                 "an index inside the file");
   Bytes summary;
   file_.read(start, footer_at - start, summary);
   const std::uint32_t crc =

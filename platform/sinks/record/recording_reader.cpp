@@ -37,7 +37,7 @@ struct RecordingReader::Body {
     const std::string& why = facts[k_fact_ended_early];
     refuse(why.empty() ? "a recording that lost " + facts[k_fact_dropped] + " messages"
                        : "a recording that ended early (" + why + ")",
-           "a complete one, which alone decides alike; --allow-incomplete reads what there is");
+           "a complete recording, required for equal output; --allow-incomplete reads the rest");
   }
   std::int64_t number(const char* fact) {
     const std::string& text = facts[fact];
@@ -66,7 +66,7 @@ struct RecordingReader::Body {
   RecordedMessage checked(std::optional<T> read, const McapMessage& message) const {
     if (!read)
       mcap.file().refuse(message.file_offset,
-                         "a message on " + message.channel->topic + " that is not whole",
+                         "a message on " + message.channel->topic + " that is incomplete",
                          "the fields of its type");
     return RecordedMessage(std::move(*read));
   }

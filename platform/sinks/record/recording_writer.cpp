@@ -158,7 +158,7 @@ RecordingOutcome RecordingWriter::Body::close() {
   if (!mcap.close(k_closing_metadata, closing)) {
     outcome.ended_early = true;
     outcome.output_sha256.clear();
-    outcome.reason = mcap.error() + "; what was written stays in " + mcap.part_path();
+    outcome.reason = mcap.error() + "; the written part stays in " + mcap.part_path();
   }
   outcome.bytes = mcap.bytes();
   return outcome;

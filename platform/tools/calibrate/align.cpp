@@ -57,7 +57,7 @@ AlignGuess best_initial_guess(std::span<const TimedPose> poses,
   }
   if (least >= 0) return best;
   throw InputError(what + ": fewer than " + std::to_string(k_align_samples_min) +
-                   " poses lie within the reference's time, at any offset up to " +
+                   " poses lie within the reference's time span, at any offset up to " +
                    format_number("%.3g s", settings.offset_max_s) +
                    "; expected both series to overlap, or --align-starts");
 }
@@ -92,9 +92,9 @@ void check_rotations(const AlignResult& result, const AlignSettings& settings,
   throw InputError(what + ": the tool's direction " +
                    format_direction(result.spread.directions.col(0)) + " moved by only " +
                    format_degrees(result.spread.spread_rad[0]) +
-                   " rms, so the lever arm along it stays open; expected at least " +
+                   " rms, so the lever arm along it is not observable; expected at least " +
                    format_degrees(settings.spread_min_rad) +
-                   ": turn the tool about two axes, or say --no-lever where both see one frame");
+                   ": turn the tool about two axes, or set --no-lever if both report one frame");
 }
 
 // Ratio of misfit: smallest median chi-square of series shifted by k_contrast_shift_s, over that of
@@ -120,7 +120,7 @@ void check_fit(const AlignResult& result, const AlignSettings& settings, bool de
                const std::string& what) {
   if (!determined || result.offset_contrast < settings.offset_contrast_min) {
     throw InputError(
-        what + ": the motion leaves the time offset open: shifted by " +
+        what + ": the time offset is not observable: shifted by " +
         format_number("%.3g s", k_contrast_shift_s) + " the series fit " +
         format_number("%.3g", result.offset_contrast) + " times worse; expected at least " +
         format_number("%.3g", settings.offset_contrast_min) + ": move the tool to and fro, faster");

@@ -21,7 +21,7 @@ Pose pose_in(TomlReader& root, const char* name, const std::string& file) {
   const auto rotation = reader.reals("rotation_xyzw", 4);
   if (!position || !rotation) {
     throw InputError(file + ":" + std::to_string(table->source().begin.line) + ": " + name +
-                     " is no pose; expected position_mm and rotation_xyzw");
+                     " is not a pose; expected position_mm and rotation_xyzw");
   }
   const Quaternion q((*rotation)[3], (*rotation)[0], (*rotation)[1], (*rotation)[2]);
   if (std::abs(q.norm() - 1) > k_length_slack) {

@@ -170,16 +170,16 @@ void check_count(const BiasResult& result, const std::string& what) {
                      " at rest: hold camera and tool still, for a second or more at each place");
   }
   throw InputError(what + ": " + std::to_string(result.samples) +
-                   " poses lie within the reference's time; expected at least " +
-                   std::to_string(k_bias_samples_min) + " of one and the same run");
+                   " poses lie within the reference's time span; expected at least " +
+                   std::to_string(k_bias_samples_min) + " of the same run");
 }
 
 void check_mean(const BiasResult& result, const BiasSettings& settings, const std::string& what) {
   if (result.outliers > (1 - settings.inliers_min) * result.samples) {
     throw InputError(what + ": the errors of " + std::to_string(result.outliers) + " of " +
                      std::to_string(result.samples) +
-                     " poses at rest do not agree with the others'; expected at most half: one "
-                     "constant correction does not hold, try --along " +
+                     " poses at rest differ from the others'; expected at most half: the error is "
+                     "not constant along these axes, try --along " +
                      (settings.frame == CorrectionFrame::tool ? "camera" : "tool"));
   }
   const auto largest = [](const Vector3& mean, const Vector3& sigma) {
@@ -193,7 +193,7 @@ void check_mean(const BiasResult& result, const BiasSettings& settings, const st
                    " and " + format_degrees(result.correction.rotation_rad.norm()) + ", is " +
                    format_number("%.2g", sigmas) + " of its sigmas; expected " +
                    format_number("%.2g", settings.sigmas_min) +
-                   ": there is nothing to correct, or the run is too short to tell");
+                   ": the error is too small to correct, or the run is too short");
 }
 
 }  // namespace

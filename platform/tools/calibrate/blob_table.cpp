@@ -64,7 +64,7 @@ BlobSeries blobs_from_text(std::string_view text, const std::string& path, const
     const std::array<double, k_columns> row = row_of(line, location);
     const Time time{static_cast<std::int64_t>(std::llround(1e9 * row[0]))};
     if (!series.frames.empty() && time < series.frames.back().time) {
-      throw InputError(location + ": time_s runs backwards; expected rows in order of time");
+      throw InputError(location + ": time_s decreases; expected rows in order of time");
     }
     if (series.frames.empty() || series.frames.back().time != time)
       series.frames.push_back({time, {}});
@@ -73,7 +73,7 @@ BlobSeries blobs_from_text(std::string_view text, const std::string& path, const
         local_rays(camera.model, {row[1], row[2]}, k_ray_steps_max, steps);
     if (!rays) {
       throw InputError(location + ": the lens of " + camera.name +
-                       " has no ray at this pixel; expected blobs within its picture");
+                       " has no ray at this pixel; expected blobs inside its image");
     }
     ObservedBlob blob;
     blob.rays = rays.value;

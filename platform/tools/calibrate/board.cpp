@@ -40,7 +40,7 @@ cv::Mat load(const std::string& path, const cv::Size& size) {
     throw InputError(path + ": " + std::to_string(picture.cols) + " x " +
                      std::to_string(picture.rows) + " pixels; expected " +
                      std::to_string(size.width) + " x " + std::to_string(size.height) +
-                     " like the first picture");
+                     ", as in the first image");
   }
   return to_8_bit(picture);
 }
@@ -135,12 +135,12 @@ Views views_of(FrameSource& source, const std::string& what,
 
 void require_detections(const Views& views, const CameraCalibrationSettings& settings) {
   if (views.found.size() >= k_target_images_min) return;
-  throw InputError(views.what + ": a board of " + std::to_string(settings.columns) + " x " +
+  throw InputError(views.what + ": a target of " + std::to_string(settings.columns) + " x " +
                    std::to_string(settings.rows) + " was found in " +
                    std::to_string(views.found.size()) + " of " + std::to_string(views.searched) +
-                   " pictures; expected at least " + std::to_string(k_target_images_min) +
+                   " images; expected at least " + std::to_string(k_target_images_min) +
                    ": count the inner corners (or circles) of a row and of a column, and show " +
-                   "the whole board");
+                   "the whole target");
 }
 
 std::vector<cv::Point3f> target_points(const CameraCalibrationSettings& settings) {
@@ -164,10 +164,10 @@ CameraFit fit_lens(const Views& views, const CameraCalibrationSettings& settings
   CameraFit fit;
   fit.tilt_rad = tilt_of(lens.rotations);
   if (fit.tilt_rad < settings.tilt_min_rad) {
-    throw InputError(views.what + ": the board's normal moved by only " +
+    throw InputError(views.what + ": the target's normal moved by only " +
                      format_degrees(fit.tilt_rad) +
-                     " rms, so the focal length stays open; expected at least " +
-                     format_degrees(settings.tilt_min_rad) + ": tilt the board to all sides");
+                     " rms, so the focal length is not observable; expected at least " +
+                     format_degrees(settings.tilt_min_rad) + ": tilt the target to all sides");
   }
   fit.model = lens.model;
   fit.images = static_cast<int>(views.searched);

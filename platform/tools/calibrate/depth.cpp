@@ -126,19 +126,18 @@ void check_span(const DepthCalibration& result, const DepthCalibrationSettings& 
   if (span_m < settings.span_min_m) {
     throw InputError(what + ": ranges from " + format_mm(result.range_from_m) + " to " +
                      format_mm(result.range_to_m) +
-                     " only, so mm_per_m stays open; expected a span " + "of at least " +
+                     " only, so mm_per_m is not observable; expected a span " + "of at least " +
                      format_mm(settings.span_min_m) +
                      ": move the tool towards the camera and away, through all ranges of its use");
   }
   if (settings.brightness == Brightness::left_out) return;
   const double ratio = result.peak_to / result.peak_from;
   if (ratio < settings.dim_ratio_min) {
-    throw InputError(what + ": brightness from " + format_counts(result.peak_from) + " to " +
-                     format_counts(result.peak_to) +
-                     " counts only, so dim_mm stays open; expected " + "the brightest at least " +
-                     format_number("%.3g", settings.dim_ratio_min) +
-                     " times the dimmest: turn the markers away, show dim ones too, or say "
-                     "--no-brightness");
+    throw InputError(
+        what + ": brightness from " + format_counts(result.peak_from) + " to " +
+        format_counts(result.peak_to) + " counts only, so dim_mm is not observable; expected " +
+        "the brightest at least " + format_number("%.3g", settings.dim_ratio_min) +
+        " times the dimmest: turn the markers away, show dim ones too, or set --no-brightness");
   }
 }
 
@@ -150,10 +149,10 @@ void check_covariance(const DepthCalibration& result, bool determined, double di
   const double slope_m = sigma(1) * (result.range_to_m - result.range_from_m);
   const double dim_m = sigma(2) * std::max(dim_span, k_dim_span_min);
   const auto open = [&](const char* part, double value, const std::string& how) {
-    throw InputError(what + ": " + part + " stays open: " +
+    throw InputError(what + ": " + part + " is not observable: " +
                      (determined
-                          ? "its part of a range is known to " + format_mm(value) + ", 1 sigma"
-                          : std::string("the data do not tell it from the others")) +
+                          ? "its share of a range has a standard deviation of " + format_mm(value)
+                          : std::string("the data do not separate it from the others")) +
                      "; expected at most " + format_mm(sigma_max_m) + ": " + how);
   };
   if (settings.brightness == Brightness::estimated && (!determined || dim_m > sigma_max_m)) {
@@ -161,12 +160,12 @@ void check_covariance(const DepthCalibration& result, bool determined, double di
          std::abs(result.range_dim_correlation) > 0.9
              ? "brightness follows range (correlation " +
                    format_number("%.2f", result.range_dim_correlation) +
-                   "): show dim markers near and bright ones far, or say --no-brightness"
-             : "record for longer, or say --no-brightness");
+                   "): show dim markers near and bright ones far, or set --no-brightness"
+             : "record for longer, or set --no-brightness");
   }
   if (!determined || slope_m > sigma_max_m)
-    open("mm_per_m", slope_m, "record for longer, through all ranges; turn the tool flat on");
-  if (sigma(0) > sigma_max_m) open("offset_mm", sigma(0), "record for longer, and nearer");
+    open("mm_per_m", slope_m, "record for longer, at all ranges; turn the tool to the camera");
+  if (sigma(0) > sigma_max_m) open("offset_mm", sigma(0), "record for longer, at shorter ranges");
 }
 
 void check_fit(const DepthCalibration& result, const DepthCalibrationSettings& settings,
@@ -175,14 +174,13 @@ void check_fit(const DepthCalibration& result, const DepthCalibrationSettings& s
   if (!others && result.pixel_sigma_px <= settings.pixel_sigma_max_px &&
       result.range_sigma_m <= settings.range_sigma_max_m)
     return;
-  throw InputError(what + ": " + std::to_string(result.outliers) + " of " +
-                   std::to_string(result.markers) + " markers do not fit, the others miss by " +
-                   format_number("%.2g px", result.pixel_sigma_px) + " and " +
-                   format_mm(result.range_sigma_m) + "; expected at most " +
-                   format_number("%.0f %%", 100 * (1 - settings.inliers_min)) + ", " +
-                   format_number("%.2g px", settings.pixel_sigma_max_px) + " and " +
-                   format_mm(settings.range_sigma_max_m) +
-                   ": the tool's file and the camera's lens must be those of the recording");
+  throw InputError(
+      what + ": " + std::to_string(result.outliers) + " of " + std::to_string(result.markers) +
+      " markers do not fit, the others miss by " + format_number("%.2g px", result.pixel_sigma_px) +
+      " and " + format_mm(result.range_sigma_m) + "; expected at most " +
+      format_number("%.0f %%", 100 * (1 - settings.inliers_min)) + ", " +
+      format_number("%.2g px", settings.pixel_sigma_max_px) + " and " +
+      format_mm(settings.range_sigma_max_m) + ": use the tool file and the lens of the recording");
 }
 
 }  // namespace

@@ -26,10 +26,10 @@ HeadsetCalibration calibrate_headset(RecordedFrames& recorded, std::size_t tool)
   };
   const auto drift = find(ErrorSource::head_drift), time = find(ErrorSource::time_offset);
   if (drift == findings.end()) {
-    throw InputError(recorded.path + ": the tool \"" + recorded.cell.tools.items[tool].name.data() +
-                     "\" and a head pose in too few of " + std::to_string(tracked.frames) +
-                     " frames; expected both for 20 s or more: lay the tool down, look at it from "
-                     "all sides");
+    throw InputError(
+        recorded.path + ": the tool \"" + recorded.cell.tools.items[tool].name.data() +
+        "\" and a head pose are in too few of " + std::to_string(tracked.frames) +
+        " frames; expected both for 20 s or more: lay the tool down and view it from all sides");
   }
   result.best_factor = drift->estimate;
   result.sigma = drift->sigma / drift->estimate;

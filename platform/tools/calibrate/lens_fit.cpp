@@ -66,7 +66,7 @@ Grid grid_of(const std::string& path, int width) {
     if (ray.z() == 0) continue;  // no ray at this pixel
     if (!(std::abs(ray.norm() - 1) < 1e-3 && ray.z() > 0)) {
       throw InputError(path + ":row " + std::to_string(i) +
-                       ": not a unit vector ahead of the camera; expected unit rays, or zeros");
+                       ": not a unit vector with z above 0; expected unit rays, or zeros");
     }
     grid.rays.push_back(
         {ray.head<2>() / ray.z(),
@@ -121,8 +121,8 @@ LensFit fit_lens_to_table(const std::string& npy_path, int width) {
   const Grid grid = grid_of(npy_path, width);
   const Lens12 start = pinhole(grid.rays);
   if (!std::isfinite(start[0] + start[1] + start[2] + start[3])) {
-    throw InputError(npy_path + ": no rays within 20 degrees of the axis; expected the image's " +
-                     "middle to look ahead");
+    throw InputError(npy_path + ": no rays within 20 degrees of the axis; expected z along the " +
+                     "image's centre");
   }
   const Lens12 lens = fitted(grid.rays, start);
 

@@ -126,9 +126,9 @@ const char* name_of(MotionPart part) { return part == MotionPart::shift ? "shift
 
 [[noreturn]] void refuse(const std::string& what, MotionPart part, const std::string& open,
                          const std::string& expected) {
-  throw InputError(what + ": the motion leaves the " + name_of(part) + "'s " + open +
+  throw InputError(what + ": the motion does not determine the " + name_of(part) + "'s " + open +
                    "; expected " + expected +
-                   ": record a minute or more of the work to be done, with starts, stops and " +
+                   ": record a minute or more of typical work, with starts, stops and " +
                    "turns, and declare the noise of these poses");
 }
 
@@ -147,17 +147,17 @@ MotionFit fitted(const MotionSeries& series, MotionPart part,
                  const std::function<void()>& evaluated, const std::string& what) {
   const MotionUnknowns start = unknowns_of(settings.start, part);
   if (is_static(series, part, start, likelihood, settings.motion_gain_min)) {
-    refuse(what, part, "noise and damping open", "it to stand out of the declared noise");
+    refuse(what, part, "noise and damping", "motion above the declared noise");
   }
   const MotionFit fit = maximise_likelihood(series, part, start, likelihood, evaluated);
   if (!fit.determined) {
-    refuse(what, part, "noise and damping open", "a likelihood that has a maximum");
+    refuse(what, part, "noise and damping", "a likelihood that has a maximum");
   }
   const double worst = std::sqrt(fit.covariance.diagonal().maxCoeff());
   if (worst > settings.log_sigma_max) {
     refuse(what, part,
            std::string(fit.covariance(0, 0) > fit.covariance(1, 1) ? "noise" : "damping") +
-               " open, " + format_number("%.2g", worst) + " of its logarithm, 1 sigma",
+               ": its logarithm has a standard deviation of " + format_number("%.2g", worst),
            "at most " + format_number("%.2g", settings.log_sigma_max));
   }
   return fit;
@@ -185,7 +185,7 @@ MotionCalibration calibrate_motion(std::span<const Trajectory> recordings,
     throw InputError(what + ": " + std::to_string(result.samples + result.held_out) + " poses at " +
                      format_number("%.3g Hz", settings.rate_hz) + "; expected at least " +
                      std::to_string(k_motion_samples_min * 3 / 2) +
-                     ", of which a third is held out: record for longer");
+                     ", one third of them for validation: record for longer");
   }
   const LikelihoodSettings likelihood{settings.noise, settings.start, settings.gap_max_s};
   int evaluations = 0;

@@ -181,7 +181,7 @@ struct MotionEquations::Body {
 };
 
 MotionEquations::MotionEquations(MotionPart part) : body_(std::make_unique<Body>(part)) {
-  if (!body_->prepared()) throw std::runtime_error("SUNDIALS could not be prepared: no memory");
+  if (!body_->prepared()) throw std::runtime_error("SUNDIALS cannot be prepared: no memory");
 }
 
 MotionEquations::~MotionEquations() = default;

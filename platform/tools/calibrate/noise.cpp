@@ -134,7 +134,7 @@ Measured measure(const Axes& axes, int poses, double period_s, const std::string
     for (const int frames : allan.lengths)
       allan.variances[k].push_back(allan_variance(axes[k], frames));
     if (*std::min_element(allan.variances[k].begin(), allan.variances[k].end()) > 0) continue;
-    throw InputError(what + ": poses are all alike; expected a tracker's own, with their noise");
+    throw InputError(what + ": all poses are equal; expected a tracker's poses with their noise");
   }
   return allan;
 }

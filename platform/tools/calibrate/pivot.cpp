@@ -96,9 +96,9 @@ void check_motion(const PivotResult& result, const PivotSettings& settings,
   throw InputError(what + ": the tool's direction " +
                    format_direction(result.spread.directions.col(0)) + " moved by only " +
                    format_degrees(result.spread.spread_rad[0]) +
-                   " rms, so the tip along it stays open; expected at least " +
+                   " rms, so the tip along it is not observable; expected at least " +
                    format_degrees(settings.spread_min_rad) +
-                   ": tilt the tool to all sides while its tip stands still");
+                   ": tilt the tool to all sides with its tip at rest");
 }
 
 void check_fit(const PivotResult& result, const PivotSettings& settings, const std::string& what) {
@@ -106,9 +106,10 @@ void check_fit(const PivotResult& result, const PivotSettings& settings, const s
   if (kept >= settings.inliers_min * result.poses_used && result.rms_m <= settings.rms_max_m)
     return;
   throw InputError(what + ": " + std::to_string(result.outliers) + " of " +
-                   std::to_string(result.poses_used) + " poses do not fit and the others miss by " +
-                   format_mm(result.rms_m) + " rms; expected at most half and " +
-                   format_mm(settings.rms_max_m) + ": the tip must stand still in a dent");
+                   std::to_string(result.poses_used) +
+                   " poses do not fit, the others have residuals of " + format_mm(result.rms_m) +
+                   " rms; expected at most half and " + format_mm(settings.rms_max_m) +
+                   ": hold the tip at rest in a dent");
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ PivotResult calibrate_pivot(std::span<const TimedPose> poses, const PivotSetting
                             const std::string& what) {
   if (poses.size() < static_cast<std::size_t>(k_pivot_poses_min)) {
     throw InputError(what + ": " + std::to_string(poses.size()) + " poses; expected at least " +
-                     std::to_string(k_pivot_poses_min) + " with the tip standing still");
+                     std::to_string(k_pivot_poses_min) + " with the tip at rest");
   }
   poses = poses.first(poses_needed(poses, settings));
   std::vector<PivotSample> samples = samples_of(poses, settings.centre_m);

@@ -30,7 +30,7 @@ void check(const PoseSource& source) {
   }
   if (source.tool.empty() && (!source.points.empty() || source.of_tip)) {
     throw InputError("calibrate: " + std::string(source.of_tip ? "--of-tip" : "--points") +
-                     " without --tool; expected the tool file that goes with it");
+                     " without --tool; expected the tool file of these points");
   }
 }
 
@@ -55,8 +55,9 @@ void take_recording(const PoseSource& source, PoseSeries& series) {
   series.tool = blobs.tool;
   const ObservationSeries seen = find_tool(blobs, *series.tool, {k_recorded_range_sigma_m});
   if (seen.observations.empty()) {
-    throw InputError(source.poses + ": the tool \"" + series.tool->name.data() + "\" in none of " +
-                     std::to_string(seen.frames) + " frames; expected it in view");
+    throw InputError(source.poses + ": the tool \"" + series.tool->name.data() +
+                     "\" is in none of " + std::to_string(seen.frames) +
+                     " frames; expected it in view");
   }
   series.begin = seen.observations.front().pose.time;
   for (const ToolObservation& observation : seen.observations) {
@@ -93,7 +94,7 @@ PoseSeries recorded_poses(RecordedFrames& recorded, std::size_t tool, PoseFrame 
     throw InputError(recorded.path + ": the tool \"" + series.tool->name.data() +
                      "\" was tracked in none of " + std::to_string(tracked.frames) + " frames" +
                      (frame == PoseFrame::world ? " with a head pose" : "") +
-                     "; expected it in view: `glint inspect --recording` names the cause");
+                     "; expected it in view: see `glint inspect --recording`");
   }
   series.begin = series.poses.front().time;
   for (TimedPose& pose : series.poses) pose.time = Time{(pose.time - series.begin).nanoseconds};
@@ -112,7 +113,7 @@ PoseSeries load_pose_series(const PoseSource& source) {
   if (is_recording(source.poses)) {
     if (source.of_tip) {
       throw InputError("calibrate: --of-tip with " + source.poses +
-                       "; expected it with a trajectory, a recording gives the tool's own frame");
+                       "; expected a trajectory (a recording holds poses of the tool's frame)");
     }
     series.what = source.poses;
     take_recording(source, series);

@@ -60,8 +60,8 @@ BlobSeries recorded_markers(RecordingReader& reader, const std::string& path,
   Cell cell = recorded_cell(reader, path);
   if (cell.camera.depth.bias.range_max_m > 0) {
     throw InputError(path +
-                     ": recorded at level blobs with a depth bias taken off already; "
-                     "expected level roi or full, or a cell without camera.depth_bias");
+                     ": recorded at level blobs after depth bias correction; expected level roi or "
+                     "full, or a cell without camera.depth_bias");
   }
   BlobSeries series = series_for(cell, path, tool);
   while (const auto message = reader.next()) {
@@ -88,8 +88,8 @@ BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
     RecordingReader reader(path);
     if (reader.level() == RecordingLevel::outputs) {
       throw InputError(path +
-                       ": recorded at level outputs, which keeps nothing of the frames; "
-                       "expected level blobs, roi or full ([record] level)");
+                       ": recorded at level outputs, without frames; expected level blobs, roi or "
+                       "full ([record] level)");
     }
     if (reader.level() == RecordingLevel::blobs) return recorded_markers(reader, path, tool);
   }

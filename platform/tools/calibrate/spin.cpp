@@ -137,7 +137,7 @@ void check(const SpinResult& result, const SpinSettings& settings, const std::st
                      " about one axis: roll it to and fro");
   }
   if (result.rms_rad > settings.wobble_max_rad) {
-    throw InputError(what + ": no direction of the tool stood still, the steadiest, " +
+    throw InputError(what + ": no direction of the tool was constant; the least moving, " +
                      format_direction(result.axis) + ", moved by " +
                      format_degrees(result.rms_rad) + " rms; expected at most " +
                      format_degrees(settings.wobble_max_rad) +

@@ -56,9 +56,9 @@ void register_to(const Tool& drawn, const std::string& what, ToolGeometry& geome
   const auto drawn_count = static_cast<std::size_t>(drawn.marker_count);
   if (count != drawn_count || static_cast<std::size_t>(label.count) != count) {
     throw InputError(what + ": " + std::to_string(label.count) + " of " + std::to_string(count) +
-                     " markers found lie within " + format_mm(2 * k_drawn_noise_m) + " of the " +
+                     " found markers lie within " + format_mm(2 * k_drawn_noise_m) + " of the " +
                      std::to_string(drawn_count) + " drawn of \"" + drawn.name.data() +
-                     "\"; expected every one: this tool alone, each marker in a fifth of the "
+                     "\"; expected all of them: show this tool only, each marker in a fifth of the "
                      "frames or more");
   }
   ToolGeometry named = geometry;

@@ -23,8 +23,8 @@ constexpr double k_labelled_share_min = 0.5;
 constexpr std::size_t k_sigma_parts = 8;
 constexpr double k_line_noises = 5;  // nearer to a line, the rotation about it is open
 constexpr const char* k_on_a_line =
-    ": the points that recur are fewer than 3 or lie on a line; expected 3 or more markers that do "
-    "not";
+    ": the recurring points are fewer than 3 or collinear; expected 3 or more markers, not "
+    "collinear";
 
 Tool tool_of(const std::vector<Vector3>& markers_m) {
   Tool tool;
@@ -46,7 +46,7 @@ std::size_t common_point_count(std::span<const PointFrame> frames, const std::st
       largest = points;
   }
   if (largest >= 3) return largest;
-  throw InputError(what + ": hardly a frame has 3 to " + std::to_string(k_markers_per_tool_max) +
+  throw InputError(what + ": too few frames have 3 to " + std::to_string(k_markers_per_tool_max) +
                    " points; expected a tool's markers: show all of them, cover other reflectors");
 }
 
@@ -91,7 +91,7 @@ void check_enough(const ToolIteration& round, std::size_t frames, const std::str
     return;
   throw InputError(what + ": the points of " + std::to_string(round.frames.size()) + " of " +
                    std::to_string(frames) + " frames fit one rigid tool, within " +
-                   format_mm(round.noise_m) + "; expected at least half of them: one tool alone, " +
+                   format_mm(round.noise_m) + "; expected at least half of them: one tool, " +
                    "3 or more of its markers in most frames");
 }
 
@@ -203,7 +203,7 @@ ToolGeometry calibrate_tool(std::span<const PointFrame> frames,
   geometry.segments = static_cast<int>(segments.size());
   for (const PointFrame& frame : frames) geometry.points += static_cast<int>(frame.points_m.size());
   if (geometry.rotation_spread_rad < settings.rotation_min_rad) {
-    throw InputError(what + ": the tool's steadiest direction turned by only " +
+    throw InputError(what + ": the least moving direction of the tool turned by only " +
                      format_degrees(geometry.rotation_spread_rad) + " rms; expected at least " +
                      format_degrees(settings.rotation_min_rad) + ": turn the tool to all sides");
   }

@@ -85,32 +85,32 @@ CheckRow frame_row(const Tracker& tracker) {
   if (verdict.usable()) return {"frame", true, "accepted", ""};
   return {"frame", false, "refused: " + std::string(name_of(verdict.reason)),
           verdict.reason == Reason::frame_invalid
-              ? "give [camera] the size and bits of the frames, and frames their depth"
-              : "give each frame a stamp later than the one before"};
+              ? "set [camera] to the size and bits of the frames; record their depth"
+              : "set increasing stamps in the recording"};
 }
 
 CheckRow head_row(Tracker& tracker) {
   if (tracker.input<HeadPose>().valid) return {"head pose", true, "valid", ""};
-  return {"head pose", true, "none: poses hold in the camera's frame only",
-          "record the head pose with the frames, where poses in the world are wanted"};
+  return {"head pose", true, "none: poses in the camera's frame only",
+          "record the head pose with the frames for poses in the world"};
 }
 
 const char* mismatch_text(Reason reason) {
   switch (reason) {
     case Reason::bad_fit:
-      return "three spots or more have about the tool's distances, but beyond the noise";
+      return "three spots or more have the tool's distances, but not within the noise";
     case Reason::imprecise:
-      return "the spots fit, but too imprecisely: few, or nearly on a line";
+      return "the spots fit, but the pose is too imprecise: few or nearly collinear spots";
     case Reason::ambiguous:
-      return "the spots fit in two ways: a symmetric or flat tool, or a far one";
+      return "the spots fit in two ways: a symmetric, flat or far tool";
     case Reason::markers_assigned_elsewhere:
       return "the spots that fit belong to another tool";
     case Reason::search_full:
       return "too many spots for [budget] search_steps";
     case Reason::blobs_full:
-      return "too many spots for [budget] blobs: only some were compared";
+      return "too many spots for [budget] blobs: not all were compared";
     default:
-      return "no three spots have the distances of the tool's markers";
+      return "no three spots match the distances of the tool's markers";
   }
 }
 
@@ -145,7 +145,7 @@ bool add_settings_rows(const Camera& camera, const Tool& tool, const ObservedBlo
       [&](CheckRow& row, const Factors& factors) {
         const double from = 1e3 * factors.first * camera.range_min_m;
         const double to = 1e3 * factors.second * camera.range_max_m;
-        row.found += text("; within %.0f to %.0f mm the tool is found", from, to);
+        row.found += text("; with range %.0f to %.0f mm the tool is found", from, to);
         row.next_step = text(
             "hold the tool within the range, or set [camera] range_mm = [%.0f, %.0f]", from, to);
       });
@@ -190,12 +190,12 @@ void add_causes(const Cell& cell, Tracker& tracker, const Tool& tool, Reason rea
                 std::vector<CheckRow>& rows) {
   const ObservedBlobs seen(tracker);
   Trials trials(cell, tracker.input<Frame>(), tool);
-  CheckRow search{"search", true, "the whole frame, or where the tool was expected", ""};
+  CheckRow search{"search", true, "the whole frame, or the region around the prediction", ""};
   if (trials.finds([](Cell&) {})) {
     search.passes = false;
     search.found = "a newly started tracker finds the tool in this frame";
     search.next_step =
-        "see the frames before: the tool was followed elsewhere, or has just come back";
+        "check the previous frames: the track was elsewhere, or the tool has just reappeared";
     rows.push_back(search);
     return;
   }
@@ -218,7 +218,7 @@ void add_causes(const Cell& cell, Tracker& tracker, const Tool& tool, Reason rea
     if (!built_in || tool.name == built_in->name) continue;
     if (!Trials(cell, tracker.input<Frame>(), *built_in).finds([](Cell&) {})) continue;
     distances.found += std::string("; they fit the tool \"") + other + "\"";
-    distances.next_step = std::string("list the tool that is there: tools = [\"") + other + "\"]";
+    distances.next_step = std::string("list the tool in view: tools = [\"") + other + "\"]";
   }
   for (int t = 0; t < cell.tools.count; ++t) {
     const Track& track = tracker.output<Estimates>().tracks[static_cast<std::size_t>(t)];
@@ -252,9 +252,8 @@ std::vector<ToolDiagnosis> diagnose(const Cell& cell, Tracker& tracker) {
     if (usable && !track.measured_now) {
       add_causes(cell, tracker, cell.tools.items[i], track.reason, diagnosis.rows);
     }
-    diagnosis.rows.push_back(
-        {"pose", track.measured_now, result_text(track),
-         track.measured_now ? "" : "see the first check above that does not hold"});
+    diagnosis.rows.push_back({"pose", track.measured_now, result_text(track),
+                              track.measured_now ? "" : "see the first failed check above"});
     for (const CheckRow& row : diagnosis.rows) {
       if (!row.passes && diagnosis.cause.empty()) diagnosis.cause = row.check;
     }

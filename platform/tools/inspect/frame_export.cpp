@@ -85,10 +85,9 @@ ExportedRows export_points(RecordedFrames& recorded, std::size_t tool, const Lin
         }
       });
   if (rows.rows == 0) {
-    throw InputError(recorded.path + ": no marker with a range in " +
-                     std::to_string(tracked.frames) +
-                     " frames; expected bright spots of a "
-                     "marker's size: `glint inspect --recording` names the cause");
+    throw InputError(
+        recorded.path + ": no marker with a range in " + std::to_string(tracked.frames) +
+        " frames; expected bright spots of a marker's size: see `glint inspect --recording`");
   }
   return with_source(std::move(rows), std::move(tracked));
 }
@@ -110,14 +109,13 @@ ExportedRows export_tum(RecordedFrames& recorded, const PoseExport& wanted, cons
         ++rows.rows;
       });
   if (rows.rows == 0 && rows.without_head_pose > 0) {
-    throw InputError(recorded.path + ": no head pose with any of " +
-                     std::to_string(rows.without_head_pose) +
-                     " tracked frames; expected one, or --frame camera");
+    throw InputError(recorded.path + ": no head pose in " + std::to_string(rows.without_head_pose) +
+                     " tracked frames; expected head poses, or --frame camera");
   }
   if (rows.rows == 0) {
     throw InputError(recorded.path + ": the tool \"" + tool.name.data() +
                      "\" was tracked in none of " + std::to_string(tracked.frames) +
-                     " frames; expected it in view: `glint inspect --recording` names the cause");
+                     " frames; expected it in view: see `glint inspect --recording`");
   }
   return with_source(std::move(rows), std::move(tracked));
 }
@@ -174,10 +172,10 @@ ExportedRows export_ground_truth(RecordedFrames& recorded, const PoseExport& wan
     ++rows.rows;
   }
   if (2 * matching < rows.frames) {
-    throw InputError(recorded.path + ": no truth: " + std::to_string(matching) + " of " +
+    throw InputError(recorded.path + ": no ground truth: " + std::to_string(matching) + " of " +
                      std::to_string(rows.frames) +
-                     " frames are those of its cell's simulator; expected a recording of "
-                     "`glint simulate`, or of `glint run` on simulated frames");
+                     " frames match its cell's simulator; expected a recording of `glint "
+                     "simulate`, or of `glint run` with simulated frames");
   }
   rows.failures = source.report().failures;
   return rows;

@@ -44,8 +44,8 @@ Cell recorded_source_cell(const std::string& source, const std::string& config,
   }
   if (cell.source.kind == "simulator") {
     throw InputError(
-        "neither a source nor a [source] in the cell; expected recorded frames: a recording, a "
-        "bag, a folder with frames.csv or a headset's capture");
+        "no SOURCE and no [source] in the cell; expected a recording, a bag, a folder with "
+        "frames.csv or a headset's capture");
   }
   return cell;
 }
@@ -67,7 +67,7 @@ std::size_t select_tool(Cell& cell, const std::string& name) {
     names += std::string(cell.tools.items[i].name.data()) + ", ";
   }
   if (!built_in_tool(name) && std::filesystem::path(name).extension().empty()) {
-    throw InputError("--tool " + name + ": no tool of that name; expected one of " + names +
+    throw InputError("--tool " + name + ": unknown tool; expected one of " + names +
                      "a built-in one, or a tool file (.toml, .rom, .ini)");
   }
   set_only_tool(cell, named_tool(name));

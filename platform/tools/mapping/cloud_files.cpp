@@ -57,7 +57,7 @@ void write_cloud(const std::string& path, const HostCloud& cloud) {
   GrowingFile file(path);
   const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   if (!file.append({std::span(data, bytes.size())}) || !file.finish()) {
-    throw InputError(path + ": " + file.error() + "; expected a place for a file");
+    throw InputError(path + ": " + file.error() + "; expected a writable path");
   }
 }
 

@@ -10,7 +10,8 @@ namespace glint {
 DepthFrame read_depth_png(const std::string& path) {
   const Image image = read_png(path, "a PNG with one plane of 16 bits");
   if (image.channels != 1 || image.bits != 16) {
-    throw InputError(path + ": is no PNG with one plane of 16 bits; expected depth in millimetres");
+    throw InputError(path +
+                     ": not a PNG with one channel of 16 bits; expected depth in millimetres");
   }
   if (image.width > k_depth_side_max || image.height > k_depth_side_max) {
     throw InputError(path + ": " + std::to_string(image.width) + " x " +

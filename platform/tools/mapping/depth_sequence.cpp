@@ -39,7 +39,8 @@ Pose load_pose(const std::string& path) {
   rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
   const double off = (rotation.transpose() * rotation - Matrix3::Identity()).cwiseAbs().maxCoeff();
   if (!(off <= k_not_rigid) || rotation.determinant() < 0) {
-    file.refuse("a rotation that is not rigid by " + std::to_string(off), "an orthonormal one");
+    file.refuse("a rotation with an orthonormality error of " + std::to_string(off),
+                "an orthonormal one");
   }
   if (n[12] != 0 || n[13] != 0 || n[14] != 0 || n[15] != 1) {
     file.refuse("another last row", "0 0 0 1");
@@ -101,7 +102,8 @@ std::vector<ExclusionCapsule> load_left_out(const std::string& path) {
 
 DepthSequence read_depth_sequence(const std::string& folder, DepthPngReader png) {
   namespace fs = std::filesystem;
-  if (!fs::is_directory(folder)) throw InputError(folder + ": is no folder; expected depth frames");
+  if (!fs::is_directory(folder))
+    throw InputError(folder + ": is not a folder; expected depth images");
   DepthSequence out;
   out.camera = load_pinhole((fs::path(folder) / "camera-intrinsics.txt").string());
   std::vector<std::string> files;
@@ -112,23 +114,23 @@ DepthSequence read_depth_sequence(const std::string& folder, DepthPngReader png)
   std::sort(files.begin(), files.end());
   if (files.empty() || files.size() > k_frames_max) {
     throw InputError(folder + ": " + std::to_string(files.size()) +
-                     " depth pictures; expected 1 to " + std::to_string(k_frames_max) +
+                     " depth images; expected 1 to " + std::to_string(k_frames_max) +
                      " NAME.depth.png or .npy");
   }
   for (const std::string& file : files) {
     const bool is_png = file.ends_with(".png");
     if (is_png && png == nullptr) {
-      throw InputError(file + ": a PNG, which a board does not read; expected NAME.depth.npy");
+      throw InputError(file + ": a PNG, not supported on a board; expected NAME.depth.npy");
     }
     DepthFrame frame = is_png ? png(file) : load_npy(file);
     if (out.frames.empty()) {
       out.camera.width = frame.width;
       out.camera.height = frame.height;
     } else if (frame.width != out.camera.width || frame.height != out.camera.height) {
-      throw InputError(file + ": " + std::to_string(frame.width) + " x " +
-                       std::to_string(frame.height) + " pixels; expected the first one's " +
-                       std::to_string(out.camera.width) + " x " +
-                       std::to_string(out.camera.height));
+      throw InputError(
+          file + ": " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
+          " pixels; expected the size of the first image, " + std::to_string(out.camera.width) +
+          " x " + std::to_string(out.camera.height));
     }
     const std::string stem = file.substr(0, file.size() - std::string(".depth.png").size());
     frame.T_world_camera = load_pose(stem + ".pose.txt");

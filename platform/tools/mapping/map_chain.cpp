@@ -95,9 +95,9 @@ void MapChain::finish() {
   notice(counts_, k.voxels.dropped(), "points left out: more voxels than voxels_max");
   notice(counts_, k.voxels.out_of_range() + k.outliers.out_of_range() + k.smoothing.out_of_range(),
          "points left out: beyond the grid or not finite");
-  notice(counts_, k.outliers.candidates_exceeded(), "points left out: too many others near them");
+  notice(counts_, k.outliers.candidates_exceeded(), "points left out: too many neighbours");
   notice(counts_, k.smoothing.candidates_exceeded(),
-         "points smoothed by a part of their neighbours");
+         "points smoothed by a subset of their neighbours");
 }
 
 void MapChain::project_onto_planes() {

@@ -66,7 +66,7 @@ void write_map_image(const std::string& path, const PointCloud& map, const Plane
       }
     }
   }
-  write_png(path, camera.width, camera.height, 3, image.data()->data(), "a place for a picture");
+  write_png(path, camera.width, camera.height, 3, image.data()->data(), "a writable path");
 }
 
 }  // namespace glint

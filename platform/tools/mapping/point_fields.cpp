@@ -144,12 +144,12 @@ HostCloud read_compressed_points(const FileText& file, const std::vector<PointFi
     file.refuse(std::to_string(packed.size()) + " compressed bytes", std::to_string(sizes[0]));
   }
   if (sizes[1] != points * layout.bytes || sizes[1] > k_lzf_growth_max * sizes[0]) {
-    file.refuse(std::to_string(sizes[0]) + " bytes that unpack to " + std::to_string(sizes[1]),
+    file.refuse(std::to_string(sizes[0]) + " bytes that decompress to " + std::to_string(sizes[1]),
                 std::to_string(points) + " points of " + std::to_string(layout.bytes));
   }
   std::vector<char> bytes(sizes[1]);
   if (!unpack_lzf(packed.substr(0, sizes[0]), bytes)) {
-    file.refuse("compressed bytes that do not unpack", "LZF, as PCL writes it");
+    file.refuse("invalid compressed bytes", "LZF, as PCL writes it");
   }
   HostCloud out;
   for (std::size_t i = 0; i < points; ++i) {

@@ -14,7 +14,7 @@ constexpr std::size_t k_field_count_max = 1024;
 void expect_one_each(const FileText& file, const Words& words, std::size_t fields) {
   if (words.size() != fields + 1) {
     file.refuse(std::to_string(words.size() - 1) + " words behind " + std::string(words[0]),
-                std::to_string(fields) + ", one a field");
+                std::to_string(fields) + ", one per field");
   }
 }
 

@@ -35,7 +35,7 @@ void restore_and_end(int signal) {
 
 KeyTerminal::KeyTerminal(int descriptor, const char* name) : descriptor_(descriptor) {
   if (::isatty(descriptor) == 0 || ::tcgetattr(descriptor, &g_saved_settings) != 0)
-    throw InputError(std::string(name) + " is no terminal; expected one whose keys are buttons");
+    throw InputError(std::string(name) + " is not a terminal; expected a terminal for --keys");
   g_terminal = descriptor;
   struct sigaction end {};
   end.sa_handler = restore_and_end;

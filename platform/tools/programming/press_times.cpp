@@ -36,9 +36,9 @@ std::vector<ButtonEvent> press_times(const std::string& text) {
     const auto to = two ? time_of(one.substr(dots + 2)) : std::nullopt;
     const bool rising = from && to && *from < *to && (events.empty() || events.back().time < *from);
     if (!rising) {
-      throw InputError("--button: found \"" + std::string(one) +
-                       "\"; expected FROM..TO in seconds, each later than the one before, as in "
-                       "1.0..2.5,3.0..4.2");
+      throw InputError(
+          "--button: found \"" + std::string(one) +
+          "\"; expected FROM..TO in seconds, in increasing order, e.g. 1.0..2.5,3.0..4.2");
     }
     events.push_back({*from, Button::draw, true});
     events.push_back({*to, Button::draw, false});

@@ -47,7 +47,7 @@ std::vector<ButtonEvent> recorded_events(const std::string& recording, ReadToler
     if (event == nullptr) continue;
     if (events.size() == k_events_max) {
       throw InputError(recording + ": more than " + std::to_string(k_events_max) +
-                       " button events; expected a hand's");
+                       " button events; expected fewer");
     }
     events.push_back(*event);
   }
@@ -57,7 +57,7 @@ std::vector<ButtonEvent> recorded_events(const std::string& recording, ReadToler
 }
 
 std::string no_accepted_pose_text(const CaptureCounts& counts) {
-  return ": nothing was drawn: of " + std::to_string(counts.poses) +
+  return ": no path drawn: of " + std::to_string(counts.poses) +
          " poses while the button was held " + std::to_string(counts.not_measured) +
          " were not measured and " + std::to_string(counts.not_in_robot) +
          " not in the robot's frame; expected measured poses of a cell with a [robot]";
@@ -75,7 +75,7 @@ RecordedPath recorded_path(const std::string& recording, const RecordedPathOptio
   result.tool = options.tool.empty() && !names.empty() ? names.front() : options.tool;
   const std::uint8_t tool = tool_number(names, result.tool, recording);
   if (events.empty()) {
-    throw InputError(recording + ": no button was recorded; expected --button FROM..TO in seconds");
+    throw InputError(recording + ": no recorded button; expected --button FROM..TO in seconds");
   }
   result.events = static_cast<std::int64_t>(events.size());
   result.unix_offset = reader.unix_offset();
@@ -85,9 +85,9 @@ RecordedPath recorded_path(const std::string& recording, const RecordedPathOptio
     if (output == nullptr || output->tool != tool) continue;
     const Result<PoseSample> sample = decode(output->record);
     if (!sample) {
-      throw InputError(
-          recording + ": an output record of " + std::to_string(output->record.size()) +
-          " bytes, which is none; expected layout 1 or " + std::to_string(k_output_record_layout));
+      throw InputError(recording + ": an output record of " +
+                       std::to_string(output->record.size()) + " bytes; expected layout 1 or " +
+                       std::to_string(k_output_record_layout));
     }
     for (; event != events.end() && before_pose(*event, sample.value.tick); ++event) {
       capture.add(*event);

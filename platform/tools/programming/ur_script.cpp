@@ -89,14 +89,13 @@ double blend_at(const std::vector<Move>& moves, std::size_t i, double most) {
 std::string ur_script(const DrawnPath& path, const UrScriptSettings& settings) {
   check(settings);
   const std::vector<Move> moves = moves_of(path);
-  std::string text =
-      "# Drawn with a tracked pen: " + std::to_string(path.size()) + " elements, " +
-      std::to_string(moves.size()) +
-      " points, the tip in the robot's base frame, metres and rotation vectors.\n"
-      "# NOT CHECKED: whether the robot reaches these poses, joint limits, singularities,\n"
-      "# collisions. Set the tool centre point first; try it slowly and in simulation.\n"
-      "def " +
-      settings.name + "():\n";
+  std::string text = "# Drawn with a tracked pen: " + std::to_string(path.size()) + " elements, " +
+                     std::to_string(moves.size()) +
+                     " points, the tip in the robot's base frame, metres and rotation vectors.\n"
+                     "# NOT CHECKED: reachability, joint limits, singularities, collisions.\n"
+                     "# Set the tool centre point first; test slowly and in simulation.\n"
+                     "def " +
+                     settings.name + "():\n";
   int element = 0;
   std::size_t next_begin = 0;
   for (std::size_t i = 0; i < moves.size(); ++i) {

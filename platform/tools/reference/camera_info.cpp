@@ -50,7 +50,7 @@ Entries entries_of(const std::string& path) {
   Entries entries;
   std::string line, above, key;
   for (int number = 1; std::getline(file, line); ++number) {
-    if (number > k_lines_max) throw InputError(path + ": longer than any camera_info file");
+    if (number > k_lines_max) throw InputError(path + ": too long for a camera_info file");
     line = line.substr(0, line.find('#'));
     const std::string content = trimmed(line);
     if (content.empty() || content == "---" || content == "...") continue;

@@ -45,7 +45,7 @@ NpyNumbers npy_picture(const std::string& path, const CameraModel& camera) {
 }
 
 Image png_picture(const std::string& path, const CameraModel& camera) {
-  Image picture = read_png(path, "a PNG picture");
+  Image picture = read_png(path, "a PNG image");
   check_size(path, static_cast<std::size_t>(picture.width),
              static_cast<std::size_t>(picture.height), camera);
   return picture;
@@ -90,9 +90,9 @@ std::vector<Vector3f> read_depth_points(const std::string& path) {
   }
   if (points.empty()) {
     throw InputError(path + ": of " + std::to_string(cloud.points.size()) +
-                     " points none is finite and less than " +
+                     " points, none is finite and less than " +
                      std::to_string(static_cast<int>(k_depth_max_m)) +
-                     " m before the camera; expected metres in the camera's frame");
+                     " m from the camera; expected metres in the camera's frame");
   }
   return points;
 }
@@ -118,7 +118,7 @@ MaskImage read_mask(const std::string& path, const CameraModel& camera) {
     throw InputError(path + ": expected a mask as .png or .npy");
   }
   if (std::all_of(out.on.begin(), out.on.end(), [](std::uint8_t on) { return on == 0; })) {
-    throw InputError(path + ": no pixel is on; expected the robot's to be");
+    throw InputError(path + ": no pixel is set; expected the robot's pixels");
   }
   return out;
 }

@@ -224,7 +224,7 @@ Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& init
   Reference reference;
   if (ends.empty()) {
     reference.found = search.aligned(initial_guess, 0);
-    reference.reason = "no pose of the searched range explains the scene";
+    reference.reason = "no pose in the searched range explains the scene";
     return reference;
   }
   reference.found = ends[0];
@@ -247,7 +247,7 @@ Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& init
   }
   if (alone && !settings.search_alternatives) {
     reference.verdict = ReferenceVerdict::ambiguous;
-    reference.reason = "one place without a mask, and no rival was searched";
+    reference.reason = "one viewpoint without a mask, and no alternative pose was searched";
     return reference;
   }
   reference.verdict = ReferenceVerdict::accepted;

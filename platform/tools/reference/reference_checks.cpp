@@ -35,43 +35,44 @@ bool is_alternative(const Candidate& other, const Candidate& found,
 std::string rejection_reason(const Candidate& candidate, const FindReferenceSettings& settings) {
   const AlignmentScore& j = candidate.judgement;
   if (candidate.alignment.reason != Reason::none) {
-    return "too little of the robot is seen to fix a pose";
+    return "too little of the robot is visible to determine a pose";
   }
   if (j.visible_share() < settings.visible_share_min) {
-    return "only " + percent(j.visible_share()) + " of the robot could be seen; wanted " +
+    return "only " + percent(j.visible_share()) + " of the robot is visible; expected at least " +
            percent(settings.visible_share_min) +
            (settings.visible_share_min < settings.visible_share_min_one_position
                 ? ""
-                : " from one place without a mask");
+                : " from one viewpoint without a mask");
   }
   if (j.inlier_share() < settings.inlier_share_min) {
-    return "only " + percent(j.inlier_share()) + " of the robot lies at the scene; wanted " +
+    return "only " + percent(j.inlier_share()) +
+           " of the robot lies on the scene; expected at least " +
            percent(settings.inlier_share_min);
   }
   if (j.unhidden_seen_through_share() > settings.seen_through_share_max) {
-    return "the scene is seen through " + percent(j.unhidden_seen_through_share()) +
-           " of what is not hidden of the robot; at most " +
+    return "free space at " + percent(j.unhidden_seen_through_share()) +
+           " of the robot's unoccluded surface; expected at most " +
            percent(settings.seen_through_share_max);
   }
   if (j.outline_share() < settings.outline_share_min) {
-    return "the scene goes on beside " + percent(1 - j.outline_share()) +
-           " of the robot's outline, as flat things do; at most " +
+    return "the scene continues beside " + percent(1 - j.outline_share()) +
+           " of the robot's outline, as a flat object does; expected at most " +
            percent(1 - settings.outline_share_min);
   }
   const double score_min = settings.score_min * j.visible_share();
   if (pose_score(candidate, settings) < score_min) {
-    return "the scene explains too little of the robot's surface, or goes on beside its outline: "
-           "worth " +
-           percent(pose_score(candidate, settings)) + "; wanted " + percent(score_min);
+    return "the scene explains too little of the robot's surface, or continues beside its outline: "
+           "score " +
+           percent(pose_score(candidate, settings)) + "; expected at least " + percent(score_min);
   }
   if (j.mask_pixels > 0 && j.mask_share() < settings.mask_share_min) {
-    return "the robot covers only " + percent(j.mask_share()) + " of the mask; wanted " +
+    return "the robot covers only " + percent(j.mask_share()) + " of the mask; expected at least " +
            percent(settings.mask_share_min);
   }
   const Matrix6& covariance = candidate.alignment.covariance;
   if (largest_sigma(covariance.topLeftCorner<3, 3>()) > settings.sigma_max_m ||
       largest_sigma(covariance.bottomRightCorner<3, 3>()) > settings.sigma_max_rad) {
-    return "what is seen leaves the pose open along one direction";
+    return "the scene does not determine the pose along one direction";
   }
   return "";
 }
@@ -86,11 +87,11 @@ std::string link_rejection_reason(const LinkScores& links, const FindReferenceSe
     const double through = static_cast<double>(link.free_space_violations) / link.looked_at;
     const std::string name = "link " + std::to_string(l) + " does not fit its joint values: ";
     if (explained < settings.link_explained_min) {
-      return name + "only " + percent(explained) + " of it lies at the scene; wanted " +
+      return name + "only " + percent(explained) + " of it lies on the scene; expected at least " +
              percent(settings.link_explained_min);
     }
     if (through > settings.link_seen_through_max) {
-      return name + "the scene is seen through " + percent(through) + " of it; at most " +
+      return name + "free space at " + percent(through) + " of it; expected at most " +
              percent(settings.link_seen_through_max);
     }
   }
@@ -103,10 +104,9 @@ std::string image_rejection_reason(const std::string& name, const AlignmentScore
       picture.unhidden_seen_through_share() <= settings.image_seen_through_max) {
     return "";
   }
-  return name +
-         ": the pose of all pictures does not fit this one: " + percent(picture.inlier_share()) +
-         " of the robot lies at the scene, it is seen through " +
-         percent(picture.unhidden_seen_through_share()) + "; wanted " +
+  return name + ": the common pose does not fit this image: " + percent(picture.inlier_share()) +
+         " of the robot lies on the scene, free space at " +
+         percent(picture.unhidden_seen_through_share()) + "; expected at least " +
          percent(settings.image_inlier_share_min) + " and at most " +
          percent(settings.image_seen_through_max);
 }

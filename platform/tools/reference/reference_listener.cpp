@@ -14,14 +14,14 @@ constexpr Duration k_poll_period = milliseconds(50);  // polling period, and per
 // Usual publisher of a topic, and the option that replaces it.
 std::string source_of(const std::string& topic) {
   if (topic == k_robot_description_topic) {
-    return "expected it of `ros2 run robot_state_publisher robot_state_publisher ARM.urdf`, or "
-           "--urdf FILE";
+    return "expected `ros2 run robot_state_publisher robot_state_publisher ARM.urdf`, or --urdf "
+           "FILE";
   }
   if (topic == k_joint_states_topic) {
-    return "expected it of the robot's driver or `ros2 run joint_state_publisher "
-           "joint_state_publisher`, or --joints FILE";
+    return "expected the robot's driver or `ros2 run joint_state_publisher joint_state_publisher`, "
+           "or --joints FILE";
   }
-  return "expected it of RViz's \"2D Pose Estimate\" or `ros2 topic pub --once /initialpose "
+  return "expected RViz's \"2D Pose Estimate\" or `ros2 topic pub --once /initialpose "
          "geometry_msgs/msg/PoseWithCovarianceStamped ...`, or --seed x,y,z,roll,pitch,yaw";
 }
 
@@ -100,10 +100,10 @@ void ReferenceListener::throw_timeout() const {
     text += "; " + topic +
             (partly ? ": no state with one position of joint '" + missing_joint_ +
                           "'; expected one message with all of the robot's joints"
-                    : ": nothing heard; " + source_of(topic));
+                    : ": no message; " + source_of(topic));
   }
   const std::uint64_t refused = inputs_.counts().refused;
-  if (refused > 0) text += "; " + std::to_string(refused) + " messages made no sense";
+  if (refused > 0) text += "; " + std::to_string(refused) + " invalid messages";
   throw InputError(text);
 }
 

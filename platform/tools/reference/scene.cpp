@@ -125,7 +125,7 @@ SceneFrame read_frame(const std::string& path, const MaskImage* mask, const Came
   SceneFrame frame = scene_frame(points, mask, camera);
   if (std::all_of(frame.depth_m.begin(), frame.depth_m.end(), [](float z) { return z == 0; })) {
     throw InputError(path + ": none of " + std::to_string(points.size()) +
-                     " points lies in the camera's picture; expected z forward, x right, y down");
+                     " points lies in the camera's image; expected z forward, x right, y down");
   }
   return frame;
 }

@@ -127,7 +127,7 @@ const char* calibration_command_of(ErrorSource source) {
     case ErrorSource::tool_geometry:
       return "glint calibrate tool";
     case ErrorSource::time_offset:
-      return "stamp the head's poses and the frames by one clock";
+      return "use one clock for the stamps of head poses and frames";
     case ErrorSource::head_drift:
       return "state it in [headset]";
     default:
@@ -237,7 +237,7 @@ std::string text_of(const CalibrationFinding& finding) {
   if (finding.source == ErrorSource::range)
     std::snprintf(at, sizeof at, " at %.0f mm", 1e3 * finding.range_m);
   char text[256];
-  std::snprintf(text, sizeof text, "%s%s%s %.2f %s%s (sigma %.2f), %.1f times what is stated; %s",
+  std::snprintf(text, sizeof text, "%s%s%s %.2f %s%s (sigma %.2f), %.1f times the stated sigma; %s",
                 finding.tool.c_str(), finding.tool.empty() ? "" : ": ",
                 std::string(name_of(finding.source)).c_str(), unit.per_base * finding.estimate,
                 unit.text, at, unit.per_base * finding.sigma, finding.size_in_stated_sigmas,

@@ -95,7 +95,7 @@ void write_detection_image(const std::string& path, const Frame& frame, const Ro
                            const Blobs& blobs, const Markers& markers,
                            std::span<const std::string> lines, std::span<const std::string> names) {
   if (frame.width() <= 0 || frame.height() <= 0) {
-    throw InputError(path + ": the frame has no reflectivity to draw; expected at least a pixel");
+    throw InputError(path + ": the frame has no reflectivity; expected at least one pixel");
   }
   const cv::Mat image = tone_mapped(frame);
   const int text_height = lines.empty() ? 0 : static_cast<int>(lines.size()) * k_line_height + 8;

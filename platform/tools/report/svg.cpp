@@ -96,7 +96,7 @@ std::string SvgCanvas::clip_rectangle(const Vector2& corner, const Vector2& size
 void write_text_file(const std::string& path, std::string_view text) {
   if (const std::string reason = write_file_atomically(path, text); !reason.empty()) {
     throw InputError(path + ": cannot be written: " + reason +
-                     "; expected a folder with room to write in");
+                     "; expected a writable folder with free space");
   }
 }
 

@@ -50,7 +50,7 @@ std::vector<Position> text_positions(const std::string& path) {
     for (const std::string& word : words_of(line)) {
       const std::optional<double> value = number_of(word);
       if (!value && !name.empty()) {
-        throw InputError(where + ": '" + word + "' is no number; expected the position of '" +
+        throw InputError(where + ": '" + word + "' is not a number; expected the position of '" +
                          name + "'");
       }
       if (value) positions.push_back({name, *value, where});
@@ -61,7 +61,7 @@ std::vector<Position> text_positions(const std::string& path) {
       }
     }
   }
-  if (!name.empty()) throw InputError(path + ": '" + name + "' stands at its end without a number");
+  if (!name.empty()) throw InputError(path + ": '" + name + "' at the end has no number");
   return positions;
 }
 
@@ -100,11 +100,10 @@ std::vector<double> read_joint_positions(const std::string& path,
       const auto input = std::find(inputs.begin(), inputs.end(), position.name);
       if (input == inputs.end()) {
         throw InputError(position.where + ": the robot has no joint '" + position.name +
-                         "' of its own position");
+                         "' with its own position");
       }
       at = static_cast<std::size_t>(input - inputs.begin());
-      if (set[at])
-        throw InputError(position.where + ": '" + position.name + "' stands there twice");
+      if (set[at]) throw InputError(position.where + ": '" + position.name + "' occurs twice");
     }
     if (!(std::abs(position.value) <= k_joint_position_max)) {
       throw InputError(position.where + ": " + std::to_string(position.value) +

@@ -79,7 +79,7 @@ ProcessOutput output_of(std::vector<std::string> command, const ProcessLimits& l
   arguments.push_back(nullptr);
   std::array<int, 2> ends{};  // read, write
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw MissingDevice(command[0] + ": no pipe to it: " + std::strerror(errno));
+    throw MissingDevice(command[0] + ": no pipe: " + std::strerror(errno));
   }
   pid_t process = -1;
   const Files files(ends[1]);

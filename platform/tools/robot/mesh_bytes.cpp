@@ -40,7 +40,7 @@ Mesh mesh_of_bytes(std::string_view bytes, const std::string& path) {
   if (!bytes.starts_with('M') || count > k_mesh_triangles_max ||
       bytes.size() != k_head_bytes + count * sizeof(Corners)) {
     throw InputError(path + ": its reader wrote " + std::to_string(bytes.size()) +
-                     " bytes that are no mesh; expected a mesh of a robot's link");
+                     " bytes of an invalid mesh; expected a mesh of a robot's link");
   }
   Mesh mesh;
   mesh.skipped = static_cast<int>(head[0] & 0x7FFFFFFFu);

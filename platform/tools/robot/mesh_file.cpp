@@ -67,8 +67,7 @@ Mesh read_apart(const std::string& path, const Eigen::Vector3d& scale, const Mes
     case ProcessEnd::too_much:
       break;
   }
-  throw InputError(path +
-                   ": the library that reads meshes fails on it; expected an undamaged mesh");
+  throw InputError(path + ": the mesh library cannot read it; expected an undamaged mesh");
 }
 
 double extent_of(const Mesh& mesh) {
@@ -106,12 +105,12 @@ Mesh read_mesh(const std::string& path, const Eigen::Vector3d& scale, const Mesh
   const double extent = extent_of(mesh);
   if (extent > k_extent_max_m) {
     throw InputError(path + ": spans " + std::to_string(extent) +
-                     " m; expected a robot's link: is the mesh in millimetres? Then give its <mesh>"
-                     " scale=\"0.001 0.001 0.001\"");
+                     " m; expected a robot's link; for a mesh in millimetres set scale=\"0.001 "
+                     "0.001 0.001\" in <mesh>");
   }
   if (extent < k_extent_min_m) {
     throw InputError(path + ": spans " + std::to_string(extent * 1e3) +
-                     " mm; expected a robot's link: was it scaled twice?");
+                     " mm; expected a robot's link; check for double scaling");
   }
   return mesh;
 }
@@ -153,7 +152,7 @@ std::string confined(const fs::path& path, const std::string& name, const RobotF
   if (!inside) {
     throw InputError(files.urdf + ": mesh '" + name + "' lies outside of " +
                      (beside ? "the URDF's folder and " : "") +
-                     "every --package-dir; expected it inside one of them");
+                     "every --package-dir; expected a path inside one");
   }
   if (!is_file(found)) {
     throw InputError(files.urdf + ": mesh '" + name + "': " + found.string() +
@@ -197,8 +196,8 @@ std::string find_mesh(const std::string& name, const RobotFiles& files) {
       part = part.substr(slash + 1);
     }
   }
-  throw InputError(files.urdf + ": mesh '" + name + "' is not there; looked below: " +
-                   (searched.empty() ? "nothing (give --package-dir)" : searched));
+  throw InputError(files.urdf + ": mesh '" + name + "' is missing; searched below: " +
+                   (searched.empty() ? "no folder (set --package-dir)" : searched));
 }
 
 }  // namespace glint

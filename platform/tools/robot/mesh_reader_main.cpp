@@ -88,7 +88,7 @@ Mesh read(const char* path, const Eigen::Vector3d& scale) {
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string why = importer.GetErrorString();
     if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
-    throw std::runtime_error("no mesh: " + why);
+    throw std::runtime_error("not a mesh: " + why);
   }
   MeshReader reader{scale, {}};
   reader.add(*scene, *scene->mRootNode, aiMatrix4x4(), 0);

@@ -118,7 +118,7 @@ class Reader {
 
   double number(std::string_view word, double most) const {
     const double value = file_.number(word);
-    if (!(std::abs(value) <= most)) file_.refuse("a number that is too large", "metres, radians");
+    if (!(std::abs(value) <= most)) file_.refuse("a number out of range", "metres, radians");
     return value;
   }
 
@@ -144,7 +144,7 @@ class Reader {
     joint.T_parent_joint = {Quaternion(v[11], v[8], v[9], v[10]), {v[5], v[6], v[7]}};
     if (std::abs(joint.axis.norm() - 1) > 1e-6 ||
         std::abs(joint.T_parent_joint.rotation.norm() - 1) > 1e-6) {
-      file_.refuse("an axis or a quaternion that is not of length 1", "length 1");
+      file_.refuse("an axis or a quaternion of a length other than 1", "length 1");
     }
     if (joint.kind != JointKind::fixed && joint.input < 0) {
       file_.refuse("a joint that nothing moves", "the number of its input");
@@ -157,7 +157,7 @@ class Reader {
     if (count_ == 0 || bytes.size() != count_ * k_point_bytes) {
       file_.refuse(
           std::to_string(bytes.size()) + " bytes for " + std::to_string(count_) + " points",
-          std::to_string(k_point_bytes) + " for each, and one point at least");
+          std::to_string(k_point_bytes) + " for each, at least one point");
     }
     for (std::size_t i = 0; i < count_; ++i) {
       std::array<float, 6> v{};
@@ -167,7 +167,7 @@ class Reader {
       const Vector3f point(v[0], v[1], v[2]), normal(v[3], v[4], v[5]);
       if (!(point.norm() < 1e3f) || !(std::abs(normal.norm() - 1) < 1e-3f) ||
           link >= robot_.links.size()) {
-        file_.refuse("point " + std::to_string(i) + " is none",
+        file_.refuse("point " + std::to_string(i) + " is invalid",
                      "metres, a normal of length 1 and a link's number");
       }
       robot_.points.push_back(point);
@@ -234,7 +234,7 @@ void write_robot_cloud(const std::string& path, const RobotCloud& robot) {
   GrowingFile file(path);
   const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   if (!file.append({std::span(data, bytes.size())}) || !file.finish()) {
-    throw InputError(path + ": " + file.error() + "; expected a place for a file");
+    throw InputError(path + ": " + file.error() + "; expected a writable path");
   }
 }
 

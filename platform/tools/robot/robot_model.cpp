@@ -55,7 +55,7 @@ class TreeBuilder {
   void number_inputs() {
     for (const std::string& name : file_.joints) {
       const urdf::JointConstSharedPtr joint = file_.model->getJoint(name);
-      if (!joint) throw InputError(path_ + ": joint '" + name + "' stands there twice or wrongly");
+      if (!joint) throw InputError(path_ + ": joint '" + name + "' is a duplicate or invalid");
       if (!moves(*joint) || joint->mimic) continue;
       input_[name] = static_cast<int>(robot_.inputs.size());
       robot_.inputs.push_back(name);
@@ -75,7 +75,7 @@ class TreeBuilder {
     if (moves(joint)) {
       const Vector3 axis(joint.axis.x, joint.axis.y, joint.axis.z);
       if (!(axis.norm() > 1e-6) || !axis.allFinite()) {
-        throw InputError(path_ + ": joint '" + joint.name + "': its axis has no direction");
+        throw InputError(path_ + ": joint '" + joint.name + "': its axis is zero");
       }
       to.axis = axis.normalized();
       resolve_mimic(joint, to);
@@ -107,7 +107,7 @@ class TreeBuilder {
       const urdf::JointConstSharedPtr next = file_.model->getJoint(at->mimic->joint_name);
       if (!next || steps > file_.joints.size()) {
         throw InputError(path_ + ": joint '" + joint.name + "' mimics '" + at->mimic->joint_name +
-                         (next ? "', which in the end mimics it" : "', which is not there"));
+                         (next ? "' in a cycle" : "', which is missing"));
       }
       if (!std::isfinite(at->mimic->multiplier) || !std::isfinite(at->mimic->offset)) {
         throw InputError(path_ + ": joint '" + at->name + "': its mimic is not finite");
@@ -229,7 +229,7 @@ PosedSurface posed_surface(const RobotModel& robot, std::span<const double> posi
   LinkPoses poses;
   if (forward_kinematics(robot.tree, positions, poses) != Reason::none) {
     throw InputError(what + ": " + std::to_string(positions.size()) +
-                     " positions, or one that is none; expected " +
+                     " positions, or a non-finite one; expected " +
                      std::to_string(robot.inputs.size()) + " in radians and metres");
   }
   PosedSurface out;

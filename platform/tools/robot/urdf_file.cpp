@@ -146,7 +146,7 @@ void check_tree(const tinyxml2::XMLElement& robot, const std::string& path) {
     if (parent.count(to_link) != 0) {
       throw InputError(path + ":" + std::to_string(joint->GetLineNum()) + ": link '" + to_link +
                        "' is the child of joint '" + by[to_link] + "' and of '" + name +
-                       "'; expected a tree, not a loop");
+                       "'; expected a tree");
     }
     parent[to_link] = from_link;
     by[to_link] = name;

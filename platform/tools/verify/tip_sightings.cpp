@@ -147,7 +147,7 @@ TipSeries observe_tips(RecordedFrames& recorded, std::size_t tool) {
   if (series.observations.empty()) {
     throw InputError(series.what + ": the tool \"" + series.tool.name.data() +
                      "\" was found in none of " + std::to_string(series.frames) +
-                     " frames; expected it in view: `glint inspect --recording` names the cause");
+                     " frames; expected it in view: see `glint inspect --recording`");
   }
   return series;
 }

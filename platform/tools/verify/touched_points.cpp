@@ -62,7 +62,7 @@ TouchedPoints touched_points(const TipSeries& series, double distance_m) {
 }
 
 std::string TouchedPoints::missing(int touches_min) const {
-  const std::string how = ": hold the tip still on the point for three seconds each time";
+  const std::string how = ": hold the tip on the point for three seconds each time";
   if (first_count < touches_min) {
     return std::to_string(first_count) + " touches of one point; expected at least " +
            std::to_string(touches_min) + how;
@@ -72,7 +72,7 @@ std::string TouchedPoints::missing(int touches_min) const {
   }
   const double spread_min_rad = PivotSettings{}.spread_min_rad;
   if (spread.spread_rad[0] < spread_min_rad) {
-    return "the touches are alike: the tool's direction " +
+    return "the touches are too similar: the tool's direction " +
            format_direction(spread.directions.col(0)) + " differs by " +
            format_degrees(spread.spread_rad[0]) + " rms; expected at least " +
            format_degrees(spread_min_rad) + ": lean the tool to another side at each touch";

@@ -180,18 +180,18 @@ Verification verify_touches(const TipSeries& series, const VerifySettings& setti
 
 std::vector<std::string> not_covered(const Verification& verification) {
   std::vector<std::string> lines = {
-      "an error that all touches have in common: where the world or the robot is taken to be",
-      "a time error or a delay: tool and head stand still",
-      "tracking in motion, in other places and at other ranges than these"};
+      "an error common to all touches: pose of the world or the robot",
+      "a time error or a delay: tool and head are at rest",
+      "tracking in motion, at other places and ranges"};
   if (verification.missing.empty()) {
     const double part = k_two_sided * verification.scale.stated_m / verification.distance_m;
     lines.push_back("a scale error below " + format_number("%.2f %%", 100 * part) +
-                    ": the distance of the points is not known better");
+                    ": limited by the distance's standard deviation");
   }
   for (const CalibrationFinding& one : verification.calibration) {
     if (one.axes > 0) continue;
     lines.push_back(std::string(name_of(one.source)) +
-                    ": these touches leave it as open as stated");
+                    ": these touches do not reduce its stated sigma");
   }
   return lines;
 }

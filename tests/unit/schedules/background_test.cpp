@@ -82,7 +82,7 @@ TEST(BackgroundPlan, KeepsASlicesNodesOnOneCore) {
   moved.core = 1 - moved.core;
   const auto faults = check_plan(plan, model);
   ASSERT_EQ(faults.size(), 1U);
-  EXPECT_NE(faults[0].find("what runs in slices has one thread"), std::string::npos) << faults[0];
+  EXPECT_NE(faults[0].find("sliced work has one thread"), std::string::npos) << faults[0];
 }
 
 TEST(BackgroundPlan, GivesSlicesTheLowestPriorityWhateverTheirDeadline) {
@@ -101,8 +101,8 @@ TEST(BackgroundPlan, IsRefusedWithSlicesAboveAnotherGroup) {
   const auto faults = check_plan(plan, model);
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_EQ(faults[0],
-            "background: priority 46; expected below 45, that of frame: what runs in "
-            "slices gives way");
+            "background: priority 46; expected below 45, that of frame: sliced work has the lowest "
+            "priority");
 }
 
 // The frame group uses both cores, so its response does not depend on the slices' core. The tick

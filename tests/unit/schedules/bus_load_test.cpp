@@ -198,19 +198,20 @@ TEST(BusLoad, RefusesSixteenToolsInClassicFrames) {
 
 TEST(BusLoad, StatesWhatIsNeededAndWhatWouldHelp) {
   // 32 poses of 675 bits a second, and 920 bits of the node's own.
-  EXPECT_EQ(check_bus_load({16, 2, CanFormat::classic}, {10e3, 4e6}).value_or(""),
-            "CAN: 16 tools at 2 Hz in classic frames need 225 % of the bus (1126.0 ms of each "
-            "tick's 500.0 ms); expected at most 100 %: fewer tools, a lower tick_hz, a higher bit "
-            "rate or FD frames");
+  EXPECT_EQ(
+      check_bus_load({16, 2, CanFormat::classic}, {10e3, 4e6}).value_or(""),
+      "CAN: 16 tools at 2 Hz in classic frames need 225 % of the bus (1126.0 ms of each "
+      "tick's 500.0 ms); expected at most 100 %: use fewer tools, a lower tick_hz, a higher bit "
+      "rate or FD frames");
   // 36 bits at 25 kbit/s and 678 at 1 Mbit/s take 2.118 ms; the node's own frames 37 ms a second.
   EXPECT_EQ(check_bus_load({1, 500, CanFormat::fd}, {25e3, 1e6}).value_or(""),
             "CAN: 1 tool at 500 Hz in FD frames need 110 % of the bus (2.2 ms of each tick's 2.0 "
-            "ms); expected at most 100 %: fewer tools, a lower tick_hz, a higher bit rate");
+            "ms); expected at most 100 %: use fewer tools, a lower tick_hz, a higher bit rate");
 }
 
 TEST(BusLoad, RefusesABitRateOfZeroOrLess) {
   const std::string complaint =
-      "CAN: a bit rate of 0 or less; expected bits a second, e.g. 1000000";
+      "CAN: a bit rate of 0 or less; expected bits per second, e.g. 1000000";
   for (const double rate : {0.0, -1.0}) {
     EXPECT_EQ(check_bus_load({1, 250, CanFormat::classic}, {rate, 4e6}), complaint);
     EXPECT_EQ(check_bus_load({1, 250, CanFormat::fd}, {rate, 4e6}), complaint);

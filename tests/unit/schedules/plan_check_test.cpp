@@ -97,7 +97,7 @@ TEST(PlanCheck, SaysWhatIsWrong) {
          p.nodes[1].start_ns = 0;
          p.nodes[1].end_ns = 500;
        },
-       "starts at 0 ns; expected at least 300 ns, when the data of StampFrame is there"},
+       "starts at 0 ns; expected at least 300 ns, when the output of StampFrame is ready"},
       {"priority", [](Plan& p, TaskModel&) { p.groups[0].priority = p.groups[1].priority; },
        "both have priority"},
       {"range", [](Plan& p, TaskModel&) { p.groups[0].priority = 100; }, "expected 1 to 99"},

@@ -74,14 +74,16 @@ TEST(PlanFaults, OfSlicesAreTheirPriorityAndTheirThread) {
   expect_faults({
       {"above",
        [](Plan&, TaskModel& m) { m.groups[1].resumable = true; },
-       {"tick: priority 30; expected below 20, that of frame: what runs in slices gives way"}},
+       {"tick: priority 30; expected below 20, that of frame: sliced work has the lowest "
+        "priority"}},
       {"level",
        [](Plan& p, TaskModel& m) {
          m.groups[1].resumable = true;
          p.groups[0].priority = 30;
        },
        {"frame and tick: both have priority 30; expected one each",
-        "tick: priority 30; expected below 30, that of frame: what runs in slices gives way"}},
+        "tick: priority 30; expected below 30, that of frame: sliced work has the lowest "
+        "priority"}},
       {"below",
        [](Plan& p, TaskModel& m) {
          m.groups[1].resumable = true;
@@ -90,7 +92,7 @@ TEST(PlanFaults, OfSlicesAreTheirPriorityAndTheirThread) {
        {}},
       {"on two cores",
        [](Plan&, TaskModel& m) { m.groups[0].resumable = m.groups[1].resumable = true; },
-       {"frame: C: core 1; expected 0, as A: what runs in slices has one thread"}},
+       {"frame: C: core 1; expected 0, as A: sliced work has one thread"}},
   });
 }
 
@@ -104,7 +106,7 @@ TEST(PlanFaults, OfPlacesAreEveryNodeOnceOnACoreWithItsTime) {
        {"tick: node -1; expected 0 to 0", "tick: T is missing; expected every node once"}},
       {"twice",
        [](Plan& p, TaskModel&) { p.nodes.push_back(p.nodes[1]); },
-       {"frame: B stands twice; expected once"}},
+       {"frame: B occurs twice; expected once"}},
       {"no such core",
        [](Plan& p, TaskModel&) { p.nodes[2].core = 2; },
        {"frame: C: core 2; expected 0 to 1"}},
@@ -114,17 +116,17 @@ TEST(PlanFaults, OfPlacesAreEveryNodeOnceOnACoreWithItsTime) {
       {"more time", [](Plan& p, TaskModel&) { p.nodes[1].end_ns = 151; }, {}},
       {"less time",
        [](Plan& p, TaskModel&) { p.nodes[1].end_ns = 149; },
-       {"frame: B: is given 49 ns; expected at least its bound, 50 ns"}},
+       {"frame: B: has 49 ns; expected at least its bound, 50 ns"}},
       {"before the release",
        [](Plan& p, TaskModel&) { p.nodes[3].start_ns = -1; },
-       {"tick: T: is given 11 ns; expected at least its bound, 10 ns"}},
+       {"tick: T: has 11 ns; expected at least its bound, 10 ns"}},
       {"one of each group",
        [](Plan& p, TaskModel&) {
          p.nodes[0].end_ns = 99;
          p.nodes[3].end_ns = 9;
        },
-       {"frame: A: is given 99 ns; expected at least its bound, 100 ns",
-        "tick: T: is given 9 ns; expected at least its bound, 10 ns"}},
+       {"frame: A: has 99 ns; expected at least its bound, 100 ns",
+        "tick: T: has 9 ns; expected at least its bound, 10 ns"}},
   });
 }
 
@@ -135,7 +137,7 @@ TEST(PlanFaults, OfOrderAreDataThatIsNotThereAndNodesThatOverlap) {
          p.nodes[2].start_ns = 104;
          p.nodes[2].end_ns = 144;
        },
-       {"frame: C: starts at 104 ns; expected at least 105 ns, when the data of A is there"}},
+       {"frame: C: starts at 104 ns; expected at least 105 ns, when the output of A is ready"}},
       {"one after the other",
        [](Plan& p, TaskModel&) {
          p.nodes[2] = {0, 2, 0, 150, 190};
@@ -176,10 +178,10 @@ TEST(PlanFaults, OfCapacityAreACoreAboveItsTimeAndAnActivationBeyondTheNext) {
          apart(p);
          p.nodes[3].end_ns = 1'510;
        },
-       {"core 1: needed 151 % of the time; expected at most 100 %"}},
+       {"core 1: used 151 % of the time; expected at most 100 %"}},
       {"no gap",
        [](Plan&, TaskModel& m) { m.groups[1].min_gap_ns = 0; },
-       {"core 1: needed 1000 % of the time; expected at most 100 %"}},
+       {"core 1: used 1000 % of the time; expected at most 100 %"}},
       {"done as the next comes", [](Plan&, TaskModel& m) { m.groups[0].min_gap_ns = 160; }, {}},
       {"done after the next came",
        [](Plan&, TaskModel& m) { m.groups[0].min_gap_ns = 159; },
@@ -201,7 +203,7 @@ TEST(PlanFaults, OfTheBusStandBesideAllOthers) {
   plan.traffic.tools = 16;
   expect_faults({{"bus",
                   busy,
-                  {"frame: B: is given 49 ns; expected at least its bound, 50 ns",
+                  {"frame: B: has 49 ns; expected at least its bound, 50 ns",
                    check_bus_load(plan.traffic, plan.bus).value_or("a bus that can carry it")}}});
 }
 

@@ -143,7 +143,7 @@ TEST(BoardFile, AnUnknownNameIsAnsweredWithTheKnownOnes) {
     (void)load_board("no-such-board", toy_expectation(), BoardUse::analyse);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("\"no-such-board\" is not known; expected a file"),
+    EXPECT_NE(std::string(error.what()).find("\"no-such-board\" is not built in; expected a file"),
               std::string::npos)
         << error.what();
   }

@@ -111,7 +111,7 @@ TEST(PlanFile, RefusesWhatDoesNotFitWithItsLineAndWhatWould) {
        "plan.toml:22: StampFrame on core 2; expected 0 to 1"},
       {"\"StampFrame\"", "\"StampedFrame\"",
        "plan.toml:22: node \"StampedFrame\" is not in group \"frame\"; expected one of StampFrame"},
-      {"\"CheckFrame\"", "\"StampFrame\"", "plan.toml:23: StampFrame stands here again"},
+      {"\"CheckFrame\"", "\"StampFrame\"", "plan.toml:23: StampFrame occurs again"},
       {"name = \"tick\"", "name = \"tock\"", "group \"tock\"; expected one of frame, tick"},
       {"priority = ", "priority = 1", "priority is "},
       {"tick_hz = 250", "tick_hz = 1000", "accepted"},

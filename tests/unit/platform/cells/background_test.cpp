@@ -70,8 +70,8 @@ TEST(CellMapping, HasABackgroundAndSettingsOfItsOwn) {
 
 TEST(CellMapping, RefusesWhatIsMissingOrOutOfRangeByItsLine) {
   EXPECT_EQ(error_message_for("[mapping]\nstride = 1\n"),
-            "cell.toml:1: [mapping] without a source; expected source = \"FOLDER\", of depth "
-            "pictures with poses");
+            "cell.toml:1: [mapping] has no source; expected source = \"FOLDER\" of depth images "
+            "with poses");
   const std::string source = "[mapping]\nsource = \"f\"\n";
   EXPECT_EQ(error_message_for(source + "stride = 0\n"),
             "cell.toml:3: mapping.stride is 0; expected a whole number from 1 to 64");

@@ -110,8 +110,8 @@ TEST(CellBudget, RefusesFewerBlobsThanTheListedToolsHaveMarkers) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "cell.toml:4: budget.blobs is 24, but the listed tools have 25 markers, each a "
-                 "blob; expected at least 25");
+                 "cell.toml:4: budget.blobs is 24, but the listed tools have 25 markers, one blob "
+                 "each; expected at least 25");
   }
 }
 

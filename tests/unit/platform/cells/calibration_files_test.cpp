@@ -164,8 +164,8 @@ TEST(CalibrationFiles, AreRefusedWithTheirPlace) {
   std::string small = k_lens;
   small.replace(small.find("width = 512"), 11, "width = 448");
   EXPECT_EQ(error_message(camera, small),
-            "camera.toml:4: camera has 448 x 512 pixels; expected 512 x 512, as the cell's "
-            "camera.model");
+            "camera.toml:4: camera has 448 x 512 pixels; expected 512 x 512, the size of the "
+            "cell's camera.model");
   std::string nan = k_motion;
   nan.replace(nan.find("3.5"), 3, "nan");
   EXPECT_NE(error_message("[motion]\nfile = \"motion.toml\"", nan)
@@ -175,13 +175,14 @@ TEST(CalibrationFiles, AreRefusedWithTheirPlace) {
             "motion.toml:1: motion.angular_damping_1_s is missing; expected a number");
   std::string turned = k_correction;
   turned.replace(turned.find("[90, 120]"), 9, "[120, 90]");
-  EXPECT_EQ(error_message("[correction]\nfile = \"bias.toml\"", turned),
-            "bias.toml:7: correction.tilt_deg is no range; expected [from, to] within 0 and 180");
-  EXPECT_EQ(error_message("[camera]\ndepth_bias = \"depth.toml\"", "[depth_bias]\noffset_mm = 1\n"),
-            "depth.toml:1: depth_bias.range_mm is missing; expected [from, to], the ranges it was "
-            "measured at");
+  EXPECT_EQ(
+      error_message("[correction]\nfile = \"bias.toml\"", turned),
+      "bias.toml:7: correction.tilt_deg is not a range; expected [from, to] within 0 and 180");
+  EXPECT_EQ(
+      error_message("[camera]\ndepth_bias = \"depth.toml\"", "[depth_bias]\noffset_mm = 1\n"),
+      "depth.toml:1: depth_bias.range_mm is missing; expected [from, to], the measured ranges");
   EXPECT_NE(error_message("[camera]\nfile = \"c.toml\"\nray_table = \"r.npy\"", k_lens)
-                .find("cell.toml:2: camera.file beside camera.ray_table"),
+                .find("cell.toml:2: camera.file and camera.ray_table are both set"),
             std::string::npos);
 }
 

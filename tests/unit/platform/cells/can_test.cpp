@@ -23,7 +23,7 @@ TEST(CellCan, TakesTheIdentifierOfButtonsBesideItsOwn) {
 
 TEST(CellCan, RefusesAnIdentifierOfButtonsWithWhichItSends) {
   const std::string expected =
-      ", with which Glint sends; expected none of 0x1A0 to 0x1AF, 0x720, 0xA0";
+      ", an identifier that Glint sends; expected none of 0x1A0 to 0x1AF, 0x720, 0xA0";
   for (const char* const taken : {"0x1A0", "0x1A4", "0x1AE", "0x1AF", "0xA0", "0x720"}) {
     EXPECT_EQ(test::error_message_for("[can]\nbuttons = " + std::string(taken) + "\n"),
               "cell.toml:2: can.buttons is " + std::string(taken) + expected);
@@ -31,8 +31,8 @@ TEST(CellCan, RefusesAnIdentifierOfButtonsWithWhichItSends) {
   // Each tool has 16 identifiers, from the cell's base identifier on.
   const std::string two = "tools = [\"pen\", \"board\"]\n[can]\n";
   EXPECT_EQ(test::error_message_for(two + "buttons = 0x1BF\n"),
-            "cell.toml:3: can.buttons is 0x1BF, with which Glint sends; expected none of 0x1A0 to "
-            "0x1BF, 0x720, 0xA0");
+            "cell.toml:3: can.buttons is 0x1BF, an identifier that Glint sends; expected none of "
+            "0x1A0 to 0x1BF, 0x720, 0xA0");
   EXPECT_EQ(test::error_message_for(two + "base_id = 0x200\nbuttons = 0x1BF\n"), "accepted");
 }
 

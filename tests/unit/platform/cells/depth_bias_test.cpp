@@ -29,11 +29,11 @@ TEST(CellDepthBias, IsNoneWhereNothingIsSaid) {
 
 TEST(CellDepthBias, NeedsTheRangesItWasMeasuredAt) {
   EXPECT_EQ(error_message_for("name = \"a\"\n[camera.depth_bias]\noffset_mm = 3\n"),
-            "cell.toml:2: camera.depth_bias.range_mm is missing; expected [from, to], the ranges "
-            "it was measured at");
+            "cell.toml:2: camera.depth_bias.range_mm is missing; expected [from, to], the measured "
+            "ranges");
   EXPECT_EQ(error_message_for("[camera.depth_bias]\nrange_mm = [900, 250]\n"),
-            "cell.toml:2: camera.depth_bias.range_mm is no range; expected [from, to], the ranges "
-            "it was measured at");
+            "cell.toml:2: camera.depth_bias.range_mm is not a range; expected [from, to], the "
+            "measured ranges");
   EXPECT_NE(error_message_for("[camera.depth_bias]\noffset_mm = 3000\nrange_mm = [1, 2]\n")
                 .find("cell.toml:2: camera.depth_bias.offset_mm"),
             std::string::npos);

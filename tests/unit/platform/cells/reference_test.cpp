@@ -29,8 +29,8 @@ TEST(CellReference, MustBeListed) {
 
 TEST(CellReference, IsNeededForARobotThatIsGivenInItsFrame) {
   EXPECT_EQ(error_message_for("[robot]\nframe = \"reference\"\n"),
-            "cell.toml:2: robot.frame is \"reference\", but no tool is the reference; expected "
-            "reference = \"NAME\" at the top, a listed tool that does not move");
+            "cell.toml:2: robot.frame is \"reference\" without a reference; expected reference = "
+            "\"NAME\" at the top, a listed tool at rest");
 }
 
 TEST(CellHeadset, IsReadInMetresAndRadians) {

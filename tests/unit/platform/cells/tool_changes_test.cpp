@@ -38,17 +38,15 @@ TEST(ToolChanges, AreRefusedByNameAndLine) {
   EXPECT_EQ(error_message_for(std::string(k_two) + "absent = [\"hammer\"]\n"),
             "cell.toml:2: absent: no tool is named \"hammer\"; expected the name of a listed tool: "
             "pen, board");
-  EXPECT_EQ(
-      error_message_for(std::string(k_two) + "[[tool_change]]\nat_s = 1\nadd = \"pen\"\n"),
-      "cell.toml:3: tool_change: \"pen\" is there already; expected a change of what is there "
-      "at that time");
+  EXPECT_EQ(error_message_for(std::string(k_two) + "[[tool_change]]\nat_s = 1\nadd = \"pen\"\n"),
+            "cell.toml:3: tool_change: \"pen\" is already present; expected a change at that time");
   EXPECT_EQ(
       error_message_for(std::string(k_two) + "[[tool_change]]\nat_s = 1\n"),
       "cell.toml:3: tool_change changes nothing; expected add = \"NAME\" or remove = \"NAME\"");
   EXPECT_EQ(error_message_for(std::string(k_two) + "[[tool_change]]\nat_s = 2\nremove = \"pen\"\n"
                                                    "[[tool_change]]\nat_s = 2\nadd = \"pen\"\n"),
-            "cell.toml:6: tool_change: at_s is not later than the one before; expected times that "
-            "rise from 0 on");
+            "cell.toml:6: tool_change: at_s is not later than the previous one; expected "
+            "increasing times from 0 on");
 }
 
 }  // namespace

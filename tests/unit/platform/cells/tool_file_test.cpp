@@ -85,10 +85,10 @@ TEST(ToolFile, RefusesMarkersThatFixNoPose) {
   EXPECT_EQ(toml_complaint(replaced(k_valid, markers, "[[0, 0, 0], [50, 0, 0]]")),
             "tool.toml:2: 2 markers; expected 3 to 8");
   EXPECT_EQ(toml_complaint(replaced(k_valid, markers, "[[0, 0, 0], [50, 1, 0], [100, 2, 0]]")),
-            "tool.toml:2: all markers lie on one line; expected at least one beside it");
+            "tool.toml:2: the markers are collinear; expected at least one off the line");
   EXPECT_EQ(
       toml_complaint(replaced(k_valid, markers, "[[0, 0, 0], [50, 0, 0], [0, 9, 0], [0, 9, 0.5]]")),
-      "tool.toml:2: two markers lie in one place; expected at least 1 mm between any two");
+      "tool.toml:2: two markers coincide; expected at least 1 mm between any two");
   std::string nine = "[[0,0,0]";
   for (int i = 1; i < 9; ++i)
     nine += ",[" + std::to_string(i * i) + ",0," + std::to_string(9 * i) + "]";
@@ -110,7 +110,7 @@ TEST(ToolFile, RefusesValuesOfTheWrongKind) {
   EXPECT_EQ(toml_complaint(replaced(k_valid, "\"disc\"", "\"cube\"")),
             "tool.toml:5: shape is \"cube\"; expected \"sphere\" or \"disc\"");
   EXPECT_EQ(toml_complaint(replaced(k_valid, "\"probe\"", "7")),
-            "tool.toml:1: name is not text; expected it in quotes");
+            "tool.toml:1: name is not text; expected text in quotes");
   EXPECT_EQ(toml_complaint(replaced(k_valid, "\"probe\"", "\"" + std::string(32, 'x') + "\"")),
             "tool.toml:1: name \"" + std::string(32, 'x') + "\" has 32 bytes; expected 1 to 31");
   EXPECT_EQ(toml_complaint("name = \n").rfind("tool.toml:1: ", 0), 0u);
@@ -122,12 +122,12 @@ TEST(ToolFile, MayHaveADepthBiasOfItsOwnMarkers) {
   EXPECT_DOUBLE_EQ(tool.depth_bias.offset_m, 0.012);
   EXPECT_NE(tool.identity, tool_from_toml_text(k_valid, "tool.toml").identity);
   EXPECT_FALSE(tool_from_toml_text(k_valid, "tool.toml").depth_bias.is_measured());
-  EXPECT_EQ(toml_complaint(k_valid + "[depth_bias]\noffset_mm = 12\n"),
-            "tool.toml:6: depth_bias.range_mm is missing; expected [from, to], the ranges it was "
-            "measured at");
+  EXPECT_EQ(
+      toml_complaint(k_valid + "[depth_bias]\noffset_mm = 12\n"),
+      "tool.toml:6: depth_bias.range_mm is missing; expected [from, to], the measured ranges");
   EXPECT_EQ(toml_complaint(k_valid + "depth_bias = 3\n"),
-            "tool.toml:6: depth_bias is no table; expected [depth_bias], as in a file of "
-            "`glint calibrate depth`");
+            "tool.toml:6: depth_bias is not a table; expected [depth_bias], as in a file of `glint "
+            "calibrate depth`");
 }
 
 const std::string k_ini =
@@ -157,13 +157,13 @@ TEST(ToolFile, NamesTheLineOfWhatIsWrongInAnAtracsysGeometry) {
             "folder/arm.ini:2: 2 markers; expected 3 to 8");
   EXPECT_EQ(ini_complaint(replaced(k_ini, "count=3", "count=4")),
             "folder/arm.ini:1: [fiducial3] x is missing; expected it in an Atracsys geometry");
-  EXPECT_EQ(ini_complaint(replaced(k_ini, "[pivot]", "[fiducial3]")),
-            "folder/arm.ini:2: count is 3 but [fiducial3] follows; expected as many fiducials as "
-            "counted");
+  EXPECT_EQ(
+      ini_complaint(replaced(k_ini, "[pivot]", "[fiducial3]")),
+      "folder/arm.ini:2: count is 3 but [fiducial3] follows; expected as many fiducials as count");
   EXPECT_EQ(ini_complaint(replaced(k_ini, "id=101", "hello")),
             "folder/arm.ini:3: \"hello\"; expected [section] or key=value");
   EXPECT_EQ(ini_complaint(replaced(k_ini, "z=0.1", "y=0.1")),
-            "folder/arm.ini:7: fiducial0/y stands twice; expected it once");
+            "folder/arm.ini:7: fiducial0/y occurs twice; expected it once");
   EXPECT_EQ(ini_complaint(replaced(k_ini, "z=0.1", "z=nan")),
             "folder/arm.ini:7: fiducial0/z is \"nan\"; expected a number from -2000 to 2000 mm");
 }
@@ -219,15 +219,16 @@ TEST(ToolFile, NoticesEveryChangedByteOfAnNdiToolDefinition) {
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
     EXPECT_EQ(rom_complaint(changed).rfind("tool.rom:byte 4: checksum ", 0), 0u) << at;
   }
-  EXPECT_EQ(rom_complaint(whole.substr(0, 60)).rfind("tool.rom:byte 0: is no NDI tool", 0), 0u);
-  EXPECT_EQ(rom_complaint("XYZ" + whole.substr(3)).rfind("tool.rom:byte 0: is no NDI tool", 0), 0u);
+  EXPECT_EQ(rom_complaint(whole.substr(0, 60)).rfind("tool.rom:byte 0: is not an NDI tool", 0), 0u);
+  EXPECT_EQ(rom_complaint("XYZ" + whole.substr(3)).rfind("tool.rom:byte 0: is not an NDI tool", 0),
+            0u);
 }
 
 TEST(ToolFile, RefusesAnNdiToolDefinitionWhoseMarkersFixNoPose) {
   EXPECT_EQ(rom_complaint(rom_of({{0, 0, 0}, {0, 0, 88}})),
             "tool.rom:byte 28: 2 markers; expected 3 to 8");
   EXPECT_EQ(rom_complaint(rom_of({{0, 0, 0}, {0, 0, 44}, {0, 0, 88}})),
-            "tool.rom:byte 72: all markers lie on one line; expected at least one beside it");
+            "tool.rom:byte 72: the markers are collinear; expected at least one off the line");
   EXPECT_NE(rom_complaint(rom_of({{0, 0, 0}, {0, NAN, 44}, {0, 0, 88}})).find("byte 88"),
             std::string::npos);
   std::string cut = rom_of({{0, 0, 0}, {0, 28, 41}, {0, 0, 88}}).substr(0, 100);
@@ -245,7 +246,7 @@ TEST(ToolFile, IsToldApartByItsEnding) {
   EXPECT_STREQ(load_tool(folder + "a.toml").name.data(), "probe");
   EXPECT_STREQ(load_tool(folder + "b.ini").name.data(), "b");
   EXPECT_STREQ(load_tool(folder + "c.rom").name.data(), "c");
-  EXPECT_NE(error_message_of([&] { return load_tool(folder + "d.toml"); }).find("is no file"),
+  EXPECT_NE(error_message_of([&] { return load_tool(folder + "d.toml"); }).find("is not a file"),
             std::string::npos);
   EXPECT_NE(
       error_message_of([&] { return load_tool(folder + "a.json"); }).find(".toml, .rom or .ini"),

@@ -49,12 +49,11 @@ TEST(ToolNotices, SayNothingOfToolsThatAreToldApart) {
 
 TEST(ToolNotices, RefuseEqualToolsByNameFileAndMarkers) {
   const std::string warnings = warnings_of(set_of({asymmetric_tool(), asymmetric_tool()}));
-  EXPECT_EQ(
-      warnings.rfind("refused: cell.toml:2: tools \"a\" (a.toml) and \"b\" (b.toml): markers "
-                     "1, 2, 3, 4 of the first lie as 1, 2, 3, 4 of the second, 0.0 sigma away at "
-                     "1.5 mm of range noise, so that in up to 50 % of frames",
-                     0),
-      0u)
+  EXPECT_EQ(warnings.rfind("refused: cell.toml:2: tools \"a\" (a.toml) and \"b\" (b.toml): markers "
+                           "1, 2, 3, 4 of the first match 1, 2, 3, 4 of the second, 0.0 sigma "
+                           "apart at 1.5 mm of range noise: in up to 50 % of frames",
+                           0),
+            0u)
       << warnings;
   EXPECT_TRUE(has(warnings, "; expected more than 1.0, better 6.2; e.g. move marker ")) << warnings;
 }
@@ -63,8 +62,8 @@ TEST(ToolNotices, RefuseAToolWhoseMarkersAreFourOfAnothers) {
   const Tool part = tool_of({{22, 24, 129}, {-40, 45, 115}, {45, 45, 240}, {-8, -45, 115}});
   const std::string warnings = warnings_of(set_of({part, asymmetric_tool()}));
   EXPECT_TRUE(has(warnings,
-                  "refused: cell.toml:2: tools \"a\" (a.toml) and \"b\" (b.toml): markers "
-                  "1, 2, 3, 4 of the first lie as 5, 2, 3, 4 of the second, 0.0 sigma"))
+                  "refused: cell.toml:2: tools \"a\" (a.toml) and \"b\" (b.toml): markers 1, 2, 3, "
+                  "4 of the first match 5, 2, 3, 4 of the second, 0.0 sigma"))
       << warnings;
 }
 
@@ -72,13 +71,13 @@ TEST(ToolNotices, RefuseAnEquilateralToolOfThreeMarkersByItsOwnExchange) {
   const std::string warnings =
       warnings_of(set_of({tool_of({{0, 0, 0}, {80, 0, 0}, {40, 80 * std::sqrt(0.75), 0}})}));
   EXPECT_TRUE(has(warnings, "refused: cell.toml:2: tool \"a\" (a.toml): its markers ")) << warnings;
-  EXPECT_TRUE(has(warnings, " may be taken for its own ")) << warnings;
+  EXPECT_TRUE(has(warnings, " may be mistaken for its own ")) << warnings;
 }
 
 TEST(ToolNotices, WarnOfANearlySymmetricToolWithItsDistance) {
   const std::string warnings = warnings_of(set_of({nearly_symmetric()}));
   EXPECT_EQ(
-      warnings.rfind("tool \"a\" (a.toml): its markers 1, 2 may be taken for its own 2, 1, ", 0),
+      warnings.rfind("tool \"a\" (a.toml): its markers 1, 2 may be mistaken for its own 2, 1, ", 0),
       0u)
       << warnings;
   EXPECT_TRUE(has(warnings, "; expected at least 6.2; e.g. move marker ")) << warnings;
@@ -93,7 +92,7 @@ TEST(ToolNotices, WarnWithinTheLimitAndRefuseWithinOneSigma) {
     return warnings_of(set, settings);
   };
   EXPECT_EQ(notices_at(6.21), "");
-  EXPECT_TRUE(has(notices_at(6.19), ", 6.1 sigma away at 0.7 mm of range noise"))
+  EXPECT_TRUE(has(notices_at(6.19), ", 6.1 sigma apart at 0.7 mm of range noise"))
       << notices_at(6.19);
   EXPECT_EQ(notices_at(1.01).rfind("tool ", 0), 0u) << notices_at(1.01);
   EXPECT_EQ(notices_at(0.99).rfind("refused: cell.toml:2: tool ", 0), 0u) << notices_at(0.99);
@@ -127,8 +126,8 @@ TEST(ToolNotices, ClaimNothingWhereTheStepsRanOut) {
   DistinctionSettings settings;
   settings.steps_max = 5;
   EXPECT_EQ(warnings_of(set_of({asymmetric_tool()}), settings),
-            "tool \"a\" (a.toml): not all labelings were tried in 5 steps; not known to be told "
-            "apart by 6.2 sigma; expected tools less alike\n");
+            "tool \"a\" (a.toml): not all labelings were compared in 5 steps; separation is not "
+            "proved to be 6.2 sigma; expected tools with more different geometry\n");
 }
 
 TEST(ToolNotices, AreNoneOfTheBuiltInCell) {

@@ -103,10 +103,10 @@ TEST(PictureFile, RefusesWhatIsNoWholePicture) {
   const struct {
     std::string file, expected;
   } cases[] = {
-      {whole.substr(0, whole.size() - 20), "no whole picture: "},
-      {whole.substr(0, 20), "no picture; expected a PNG"},
-      {wrong_sum, "no whole picture: "},
-      {png(2, 2, 3, 0, "0"), "no picture: "},
+      {whole.substr(0, whole.size() - 20), "incomplete image: "},
+      {whole.substr(0, 20), "not an image; expected a PNG"},
+      {wrong_sum, "incomplete image: "},
+      {png(2, 2, 3, 0, "0"), "invalid image: "},
       {png(16'000, 4'000, 16, 2, "0"), "bytes, too few for 16000 x 4000 pixels"},
       {png(16'385, 1, 8, 0, "0"), ":byte 16: 16385 x 1 pixels; expected at most 16384 a side"},
       {png(16'000, 16'000, 8, 0, "0"), ":byte 16: 16000 x 16000 pixels"},

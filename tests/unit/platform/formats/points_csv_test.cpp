@@ -40,7 +40,7 @@ TEST(PointsCsv, NamesTheLineOfWhatItRefuses) {
   EXPECT_EQ(error_message_for("0,1,2,inf\n"),
             "points.csv:1: z_m is \"inf\"; expected a number from -10000 to 10000");
   EXPECT_EQ(error_message_for("1,1,2,3\n0.9,1,2,3\n"),
-            "points.csv:2: time_s runs backwards; expected rows in order of time");
+            "points.csv:2: time_s decreases; expected rows in order of time");
   EXPECT_EQ(error_message_for("0,1,2\n"),
             "points.csv:1: \"0,1,2\"; expected four columns time_s,x_m,y_m,z_m");
   EXPECT_EQ(error_message_for("0,1,2,3,4\n"),
@@ -54,7 +54,7 @@ TEST(PointsCsv, NamesTheLineOfWhatItRefuses) {
   std::string crowd;
   for (int i = 0; i <= k_blobs_max; ++i) crowd += "0,1,2," + std::to_string(i) + "\n";
   EXPECT_EQ(error_message_for(crowd),
-            "points.csv:257: more than 256 points of one time; expected at most so many");
+            "points.csv:257: more than 256 points at one time; expected at most so many");
 }
 
 TEST(PointsCsv, RefusesAFileThatIsNotThere) {

@@ -224,7 +224,7 @@ TEST(FileSource, ReportsWhatEndedTheReading) {
   const Delivered delivered = delivered_by(source);
   EXPECT_EQ(delivered.frames.size(), 1u);
   ASSERT_EQ(delivered.report.failures.size(), 1u);
-  EXPECT_EQ(delivered.report.failures[0], "reading ended early: byte 7: cut");
+  EXPECT_EQ(delivered.report.failures[0], "reading stopped early: byte 7: cut");
 }
 
 // The duration limits the arrival time, 9 ms after the middle of the exposure.
@@ -314,7 +314,7 @@ TEST(RecordedRun, OfARecordingGivesTheRunsOutputRecords) {
     EXPECT_EQ(result.output_sha256, run.output_sha256) << level;
     EXPECT_EQ(result.frames, run.frames);
     EXPECT_EQ(result.frames_tracked, run.frames_tracked);
-    EXPECT_EQ(result.source.text.find("only inside its regions") != std::string::npos,
+    EXPECT_EQ(result.source.text.find("pixels inside ROIs only") != std::string::npos,
               level == std::string("roi"));
   }
 }

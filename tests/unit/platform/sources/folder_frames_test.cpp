@@ -128,7 +128,7 @@ TEST_F(FolderFramesTest, NamesWhatIsWrong) {
   expect_refusal("time_ns,reflectivity,depth,x_m\n", "no column y_m; expected all seven");
   expect_refusal("time_ns,reflectivity,depth,y_m\n", "no column");
   expect_refusal(std::string(k_heading) + "1,a.pgm,\n", "depth is empty");
-  expect_refusal(std::string(k_heading) + "1,a.pgm,c.pgm\n", "another size");
+  expect_refusal(std::string(k_heading) + "1,a.pgm,c.pgm\n", "size differs");
   expect_refusal("time_ns,reflectivity,depth,x_m,y_m,z_m,qx,qy,qz,qw\n1,a.pgm,d.pgm,1,2,3,,,,\n",
                  "3 numbers of a pose");
   std::filesystem::remove(std::filesystem::path(folder_.path()) / "frames.csv");

@@ -155,7 +155,7 @@ TEST_F(RosFramesTest, RefusesWhatIsNoImageOfTheCamera) {
       {{.encoding = "bgr8"}, "/ir: encoding \"bgr8\"; expected mono8"},
       {{.width = 5, .step = 10, .bytes = 30}, "/ir: 5 x 3 pixels; expected 4 x 3 (hololens2_ahat)"},
       {{.step = 4}, "/ir: 4 x 3 pixels of mono16, 4 bytes a row"},
-      {{.bytes = 22}, "and 22 in all; expected rows that hold their pixels"}};
+      {{.bytes = 22}, "and 22 in all; expected rows of exactly these pixels"}};
   for (const auto& [sent, part] : wrong) {
     RosFrames own(live_, topics());
     own.add_image(image_at(stamp(0), sent), ImageKind::reflectivity, 1, arrival(0));

@@ -86,7 +86,7 @@ TEST(RosImage, RefusesWhatIsNoImage) {
   }
   Bytes cut = image_message(2, 2, "mono8", false, 2, four);
   cut.pop_back();
-  EXPECT_NE(refusal_of(cut).find("not whole"), std::string::npos);
+  EXPECT_NE(refusal_of(cut).find("incomplete"), std::string::npos);
 }
 
 Bytes info_message(const char* model, const std::vector<double>& d, double fx = 250,
@@ -149,7 +149,7 @@ TEST(CameraInfo, RefusesWhatIsNoLens) {
         std::pair{info_message("plumb_bob", {0, 0, 0, 0, 0}, 0), "no calibration"},
         std::pair{info_message("plumb_bob", {NAN, 0, 0, 0, 0}), "no calibration"},
         std::pair{info_message("plumb_bob", {0, 0, 0, 0, 0}, 250, 2), "binning"},
-        std::pair{info_message("plumb_bob", std::vector<double>(65)), "not whole"}}) {
+        std::pair{info_message("plumb_bob", std::vector<double>(65)), "incomplete"}}) {
     try {
       (void)lens_text_of_camera_info(message, "/info");
       ADD_FAILURE() << part;

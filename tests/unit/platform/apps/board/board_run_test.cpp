@@ -120,8 +120,8 @@ TEST_F(BoardRun, RefusesDepthThatABoardCannotRead) {
     (void)run("");
     ADD_FAILURE() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), path("999.depth.png") +
-                                ": a PNG, which a board does not read; expected NAME.depth.npy");
+    EXPECT_EQ(error.what(),
+              path("999.depth.png") + ": a PNG, not supported on a board; expected NAME.depth.npy");
   }
 }
 

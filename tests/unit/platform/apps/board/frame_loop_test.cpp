@@ -105,9 +105,8 @@ TEST_F(FrameLoopFile, GoesToAndFroWithoutAJump) {
 }
 
 TEST_F(FrameLoopFile, NamesTheByteThatIsWrong) {
-  EXPECT_EQ(
-      refused_with(0, 'X'),
-      file_ + ":byte 0: no loop of frames; expected GLNTLOOP, as glint_board_frames writes it");
+  EXPECT_EQ(refused_with(0, 'X'),
+            file_ + ":byte 0: no loop of frames; expected GLNTLOOP, a file of glint_board_frames");
   EXPECT_EQ(refused_with(8, 2), file_ + ":byte 8: layout 2; expected 1");
   EXPECT_EQ(refused_with(13, 9), file_ + ":byte 12: width 2309; expected 1 to 1024");
   EXPECT_EQ(refused_with(20, 12), file_ + ":byte 20: bits 12; expected 8 or 16");

@@ -110,14 +110,13 @@ TEST_F(HeardJointsOfARun, AreMissedWhenTheyStopAndServeWhenTheyComeAgain) {
   const auto warns = [&] { return robot_count("without_joints") > 0 && robot_.level == 1; };
   ASSERT_TRUE(run.repeat_until(speak, [&] { return robot_count("followed") >= 1; }));
   EXPECT_TRUE(run.repeat_until([] {}, warns));
-  EXPECT_EQ(robot_.message,
-            "not followed: no joint states for too long; see to the robot's driver");
+  EXPECT_EQ(robot_.message, "not tracked: joint states are too old; check the robot's driver");
   const long followed = robot_count("followed");
   EXPECT_TRUE(run.repeat_until(
       speak, [&] { return robot_count("followed") >= followed + 2 && robot_.level == 0; }));
   ASSERT_FALSE(run.has_ended()) << run.words();
   EXPECT_GE(end(run).at("pictures_without_joints"), 1);
-  EXPECT_NE(run.words().find("rt/joint_states: nothing for longer than mapping.joints_lost_after"),
+  EXPECT_NE(run.words().find("rt/joint_states: no state for longer than mapping.joints_lost_after"),
             std::string::npos);
 }
 

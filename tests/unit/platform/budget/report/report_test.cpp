@@ -223,11 +223,12 @@ TEST_F(BudgetReport, RefusesABrokenFileByItsPlaceInIt) {
   EXPECT_NE(message_of({{path("deep.json")}, "", "", ""}).find("deep.json: nested deeper than 32"),
             std::string::npos);
   std::ofstream(path("large.json")) << R"({"kernels":[{"name":"FindBlobs","loops":[1e999]}]})";
-  EXPECT_NE(message_of({{path("large.json")}, "", "", ""}).find("large.json: a number that no"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of({{path("large.json")}, "", "", ""}).find("large.json: a number out of range"),
+      std::string::npos);
   EXPECT_NE(message_of({{}, path("measure.json"), "", ""}).find("no \"chains\""),
             std::string::npos);
-  EXPECT_NE(message_of({}).find("nothing to report on"), std::string::npos);
+  EXPECT_NE(message_of({}).find("no input"), std::string::npos);
 }
 
 }  // namespace

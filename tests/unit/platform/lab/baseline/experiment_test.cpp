@@ -150,7 +150,7 @@ TEST(Experiment, WritesPublishedSeedAndGlintSideBySide) {
   result.kind = ExperimentKind::moving;
   const std::string table = experiment_table(result);
   for (const char* words :
-       {"22.10", "30.70", "5.39", "-0.10", "0.22", "seed here", "Glint here", "with board"})
+       {"22.10", "30.70", "5.39", "-0.10", "0.22", "baseline", "Glint", "with body"})
     EXPECT_NE(table.find(words), std::string::npos) << words;
 }
 

@@ -161,7 +161,7 @@ TEST(ButtonsOfARun, AreSaidNotToBeHeardWhereNoBusCanBringThem) {
   };
   EXPECT_EQ(why_not(), "");
   cell.can.buttons = 0x190;
-  EXPECT_EQ(why_not(), "can.buttons: log:can.log is no bus; expected socketcan:IF in real time");
+  EXPECT_EQ(why_not(), "can.buttons: log:can.log is not a bus; expected socketcan:IF in real time");
   cell.realtime = false;
   EXPECT_EQ(why_not(), "can.buttons: not in real time; expected socketcan:IF in real time");
 }

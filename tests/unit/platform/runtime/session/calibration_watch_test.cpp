@@ -95,7 +95,7 @@ TEST(CalibrationWatch, NamesTheTimeOfTheHeadPosesByABodyAtRest) {
   ASSERT_NE(found, nullptr);
   EXPECT_EQ(found->source, ErrorSource::time_offset);
   EXPECT_NEAR(found->estimate, -0.025, 0.01) << "the poses are late";
-  EXPECT_NE(text_of(*found).find("stamp the head's poses and the frames by one clock"),
+  EXPECT_NE(text_of(*found).find("use one clock for the stamps of head poses and frames"),
             std::string::npos);
 }
 
@@ -158,24 +158,26 @@ TEST(CalibrationWatch, IsAWarningOfDiagnostics) {
     text.add_calibration(notes.all());
     return entry_of(text.message(Time{}), "glint: calibration");
   };
-  EXPECT_EQ(entry().message, "too little seen");
+  EXPECT_EQ(entry().message, "too few data");
   notes.set({finding});
   EXPECT_EQ(entry().level, 0);
   EXPECT_EQ(entry().message, "as stated");
   finding.exceeds_stated = true;
   notes.set({finding});
   EXPECT_EQ(entry().level, 1);
-  EXPECT_EQ(entry().message,
-            "range offset 24.00 mm (sigma 1.10), 4.0 times what is stated; glint calibrate depth");
+  EXPECT_EQ(
+      entry().message,
+      "range offset 24.00 mm (sigma 1.10), 4.0 times the stated sigma; glint calibrate depth");
   EXPECT_EQ(entry().values.size(), 1u) << "the newest ones alone";
   EXPECT_EQ(entry().values.count("range offset"), 1u);
   finding.tool = "pen";
   finding.source = ErrorSource::range;
   finding.range_m = 0.48;
   notes.set({finding});
-  EXPECT_EQ(entry().message,
-            "pen: range offset or scale 24.00 mm at 480 mm (sigma 1.10), 4.0 times what is stated; "
-            "glint calibrate depth");
+  EXPECT_EQ(
+      entry().message,
+      "pen: range offset or scale 24.00 mm at 480 mm (sigma 1.10), 4.0 times the stated sigma; "
+      "glint calibrate depth");
 }
 
 }  // namespace

@@ -230,7 +230,7 @@ TEST(LostOutput, NamesEachKindWithItsCount) {
   outcome.dds_reader_error = "dds: the reader process was ended by signal 9";
   ASSERT_EQ(lines_of(losses_of(outcome)).size(), 1u);
   EXPECT_EQ(lines_of(losses_of(outcome))[0],
-            "lost, DDS: what was received is unknown: " + outcome.dds_reader_error);
+            "lost, DDS: received count unknown: " + outcome.dds_reader_error);
 }
 
 TEST(SlowSource, IsBlamedForTheTicksWithoutAMeasurement) {

@@ -141,8 +141,8 @@ TEST(Replay, RefusesARecordingWithoutAnOutputRecord) {
     } catch (const InputError& error) {
       const std::string found = keep_frames ? "14 frames and 0 ticks" : "0 frames and 3 ticks";
       EXPECT_EQ(std::string(error.what()),
-                file + ": nothing to replay: " + found +
-                    ", but no output record; expected a recording of a run with ticks");
+                file + ": no output to replay: " + found +
+                    " without output records; expected a recording of a run with ticks");
     }
   }
 }

@@ -57,7 +57,7 @@ TEST(CanSink, HasSentAllWhereNothingWasDroppedAndNothingFailed) {
 TEST(CanSink, NamesTheLogThatCannotBeMade) {
   EXPECT_EQ(error_message<InputError>("log:/no/such/folder/can.log"),
             "/no/such/folder/can.log: cannot be written: No such file or directory; expected a "
-            "place for a log");
+            "writable path");
 }
 
 }  // namespace

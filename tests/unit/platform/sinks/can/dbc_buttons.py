@@ -45,7 +45,7 @@ def main():
         heard = subprocess.run([reader, log, str(message.arbitration_id.id)], text=True,
                                capture_output=True, check=False)
     found = heard.stdout.split("\n")[:-1]
-    print(f"{len(found)} changes heard of {len(expected)} in {FRAMES} frames, exit {heard.returncode}")
+    print(f"{len(found)} changes received of {len(expected)} in {FRAMES} frames, exit {heard.returncode}")
     same = found == expected and message.arbitration_id.id == IDENTIFIER
     return 0 if heard.returncode == 0 and same and expected else 1
 

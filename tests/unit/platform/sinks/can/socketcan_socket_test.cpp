@@ -168,7 +168,7 @@ TEST_F(SocketCanSocket, IsRefusedWithTheNextStep) {
   kernel_.flags = IFF_LOOPBACK;
   EXPECT_EQ(refusal(CanFormat::classic), "socketcan:lo: is down; expected up (ip link set lo up)");
   kernel_.flags_error = ENODEV;
-  EXPECT_EQ(refusal(CanFormat::classic), "socketcan:lo: cannot be asked: No such device");
+  EXPECT_EQ(refusal(CanFormat::classic), "socketcan:lo: cannot be queried: No such device");
   kernel_.socket_error = EAFNOSUPPORT;
   EXPECT_EQ(refusal(CanFormat::classic),
             "socketcan:lo: no CAN socket: Address family not supported by protocol; expected a "

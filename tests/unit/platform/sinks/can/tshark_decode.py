@@ -1,4 +1,4 @@
-"""tshark opens the CAN log and sees every frame with its identifier and its bytes.
+"""tshark opens the CAN log and decodes every frame with its identifier and its bytes.
 
     tshark_decode.py WRITE_KNOWN_SAMPLES
 Exit 0: it does; 1: something differs; 77: tshark is not installed.
@@ -39,8 +39,8 @@ def main():
         seen.append((int(identifier, 0), data.upper()))
     wrong = [(w, s) for w, s in zip(written, seen) if w != s]
     for written_frame, seen_frame in wrong[:10]:
-        print(f"written {written_frame}, seen {seen_frame}")
-    print(f"{len(written)} frames written, {len(seen)} seen, {len(wrong)} differ, "
+        print(f"written {written_frame}, decoded {seen_frame}")
+    print(f"{len(written)} frames written, {len(seen)} decoded, {len(wrong)} differ, "
           f"{len(heartbeats)} heartbeats, {len(emergencies)} emergencies")
     operational = written.count((HEARTBEAT, "05"))
     errors = sum(identifier == EMERGENCY for identifier, _ in written)

@@ -189,7 +189,7 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
   DdsSettings settings = test_settings();
   EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, -1);
   settings.robot = &robot;
-  EXPECT_EQ(diagnostic_entry(settings, "glint: robot").message, "not yet seen");
+  EXPECT_EQ(diagnostic_entry(settings, "glint: robot").message, "not yet detected");
   robot.followed = 12;
   const DiagnosticEntry followed = diagnostic_entry(settings, "glint: robot");
   EXPECT_EQ(followed.level, 0);
@@ -202,8 +202,8 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
   const DiagnosticEntry jumped = diagnostic_entry(settings, "glint: robot");
   EXPECT_EQ(jumped.level, 1);
   EXPECT_EQ(jumped.message,
-            "seen 31.2 mm and 2.0 deg from where it is taken to be, refused: stop, look what "
-            "moved, and find it anew (glint reference)");
+            "detected 31.2 mm and 2.0 deg from its stored pose, rejected; stop, check what moved, "
+            "run glint reference");
   EXPECT_EQ(jumped.values.at("followed"), "12");
   EXPECT_EQ(jumped.values.at("jumps_refused"), "3");
   EXPECT_EQ(jumped.values.at("unsure"), "2");
@@ -248,11 +248,11 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotsJointsAreNoLongerHeard) {
   robot.joints_lost = true;
   const DiagnosticEntry lost = diagnostic_entry(settings, "glint: robot");
   EXPECT_EQ(lost.level, 1);
-  EXPECT_EQ(lost.message, "not followed: no joint states for too long; see to the robot's driver");
+  EXPECT_EQ(lost.message, "not tracked: joint states are too old; check the robot's driver");
   EXPECT_EQ(lost.values.at("without_joints"), "4");
   robot.jumped = true;
   const std::string both = diagnostic_entry(settings, "glint: robot").message;
-  EXPECT_EQ(both.rfind("seen 0.0 mm", 0), 0u) << both;
+  EXPECT_EQ(both.rfind("detected 0.0 mm", 0), 0u) << both;
   EXPECT_NE(both.find("; " + lost.message), std::string::npos) << both;
   robot.jumped = false;
   robot.joints_lost = false;

@@ -102,10 +102,10 @@ TEST(GrowingFile, RefusesToReserveWhatNoFileCanHave) {
 
 TEST(GrowingFile, NamesTheFolderThatIsNotThere) {
   EXPECT_EQ(refusal_of([] { GrowingFile file("/no/such/folder/a"); }),
-            "/no/such/folder/a.part: open at byte 0: No such file or directory; expected a folder "
-            "that can be written");
+            "/no/such/folder/a.part: open at byte 0: No such file or directory; expected a "
+            "writable folder");
   EXPECT_EQ(refusal_of([] { GrowingFile file("/dev/null"); }),
-            "/dev/null: a device; expected a file's name");
+            "/dev/null: a device; expected a regular file");
 }
 
 TEST(GrowingFile, SaysWhyItDidNotGetItsName) {
@@ -165,9 +165,7 @@ TEST(InputFile, NamesTheByteAtWhichTheFileEnds) {
   const InputFile file(path);
   std::filesystem::resize_file(path, 6);
   Bytes bytes;
-  const std::string refusal = path +
-                              ":byte 6: the file ends; expected as many bytes as it had when "
-                              "opened";
+  const std::string refusal = path + ":byte 6: the file ends; expected the size at opening";
   EXPECT_EQ(refusal_of([&] { file.read(4, 6, bytes); }), refusal) << "after two of six bytes";
   EXPECT_EQ(refusal_of([&] { file.read(6, 1, bytes); }), refusal);
   file.read(4, 2, bytes);
@@ -189,7 +187,7 @@ TEST(InputFile, NamesTheByteThatCannotBeRead) {
   const InputFile file("/proc/self/mem");
   Bytes bytes;
   EXPECT_EQ(refusal_of([&] { file.read(0, 8, bytes); }),
-            "/proc/self/mem:byte 0: Input/output error; expected a file that can be read");
+            "/proc/self/mem:byte 0: Input/output error; expected a readable file");
   EXPECT_EQ(refusal_of([&] { file.refuse(12, "this", "that"); }),
             "/proc/self/mem:byte 12: this; expected that");
 }

@@ -131,24 +131,23 @@ TEST_F(McapRefusals, NameWhatAFooterLacks) {
   bytes[9] = 20;
   for (const std::uint8_t start : {7, 9}) {
     bytes[17] = start;
-    EXPECT_EQ(error_of(bytes),
-              "8: an index at byte " + std::to_string(start) + "; expected one inside the file");
+    EXPECT_EQ(error_of(bytes), "8: an index at byte " + std::to_string(start) +
+                                   "; expected an index inside the file");
   }
   bytes[17] = 8;
   EXPECT_EQ(error_of(bytes), "8: no header; expected a header record right after the first bytes")
       << "an index may be empty";
   bytes.pop_back();
   EXPECT_EQ(error_of(bytes),
-            "44: the file ends without its index: it was cut short; expected a "
-            "recording that was closed; --allow-truncated reads what is whole");
+            "44: the file ends without its index: truncated; expected a closed recording; "
+            "--allow-truncated reads its complete part");
 }
 
 TEST_F(McapRefusals, NameARecordThatDoesNotFit) {
   Bytes record;
   append_heading(record, 0, 0);
   const std::string within =
-      "; expected a record within the 13 bytes that follow, and at most "
-      "268435456";
+      "; expected a record within the 13 remaining bytes, and at most 268435456";
   EXPECT_EQ(error_of(ended(file_with(record))),
             std::to_string(k_first) + ": a record of kind 0 and 0 bytes" + within);
   record[0] = 0x80;
@@ -176,15 +175,14 @@ TEST_F(McapRefusals, NameAChecksumThatDisagrees) {
   heading.crc = 7;
   EXPECT_EQ(error_of(ended(file_with(chunk_of(inside, heading)))),
             std::to_string(k_first) + ": a chunk with checksum " + right +
-                "; expected 7; the file is damaged here; --allow-truncated reads all but this "
-                "chunk");
+                "; expected 7; the file is damaged here; --allow-truncated reads the other chunks");
 
   const Bytes bytes = file_with(inside);
   EXPECT_EQ(error_of(ended(bytes, {{}, crc32(0, bytes), 0})), "1");
   EXPECT_EQ(error_of(ended(bytes, {{}, 7, 0})),
             std::to_string(bytes.size()) + ": records with checksum " +
                 std::to_string(crc32(0, bytes)) +
-                "; expected 7; the file is damaged before this place");
+                "; expected 7; the file is damaged before this byte");
 
   const Bytes whole = ended(bytes);
   const std::uint64_t summary_at = bytes.size() + 13;
@@ -226,7 +224,7 @@ TEST_F(McapRefusals, NameTheKindOfARecordThatIsTooShort) {
 TEST_F(McapRefusals, NameTheChannelThatIsNotDescribed) {
   EXPECT_EQ(error_of(ended(file_with(message_record(9)))),
             std::to_string(k_first) +
-                ": a message of channel 9; expected one of a channel described before");
+                ": a message of channel 9; expected one of a previously described channel");
 }
 
 TEST_F(McapRefusals, NameTheIndexThatPointsOutOfTheFile) {
@@ -252,7 +250,7 @@ TEST_F(McapRefusals, NameTheIndexThatPointsOutOfTheFile) {
   expect_refused("metadata index", McapMetadataIndex{});
   EXPECT_EQ(with_index(McapChunkIndex{}, 8, 9),
             "8: a record of kind 1 and " + std::to_string(k_header_bytes - 9) +
-                " bytes; expected the record that the index has here; the file is damaged here");
+                " bytes; expected the record of the index; the file is damaged here");
   Ending part;
   append_heading(part.summary, 11, 3);
   append(part.summary, Bytes(3));
@@ -274,11 +272,10 @@ TEST_F(McapRefusals, NameACompressionThatCannotBeRead) {
     const Bytes bytes = ended(file_with(chunk_of(inside, heading)));
     const std::string shown = at + name.substr(0, 16) + "'; expected ";
     EXPECT_EQ(error_of(bytes), shown + "chunks without compression, as Glint writes them");
-    EXPECT_EQ(error_of(bytes, decode_by_xor), name == "zstd"  ? "1"
-                                              : name == "lz4" ? shown +
-                                                                    "one that is whole; the file "
-                                                                    "is damaged here"
-                                                              : shown + "zstd, lz4 or none");
+    EXPECT_EQ(error_of(bytes, decode_by_xor),
+              name == "zstd"  ? "1"
+              : name == "lz4" ? shown + "a complete one; the file is damaged here"
+                              : shown + "zstd, lz4 or none");
   }
   heading.compression = "zstd";
   heading.uncompressed_bytes = k_mcap_record_bytes_max + 1;

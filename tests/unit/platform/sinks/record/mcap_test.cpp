@@ -60,7 +60,7 @@ TEST(Mcap, OfAnotherKindIsRefusedWithPathAndByte) {
                                      ":byte 0: an empty file; expected the first bytes of an MCAP "
                                      "file, 89 4D 43 41 50 30 0D 0A");
   test::write_whole(path, {'#', 'R', 'O', 'S', 'B', 'A', 'G', ' ', 'V', '2'});
-  EXPECT_EQ(test::refusal(path).find(path + ":byte 0: another kind of file"), 0U);
+  EXPECT_EQ(test::refusal(path).find(path + ":byte 0: another file format"), 0U);
   EXPECT_EQ(
       test::refusal(folder.file("none.mcap")).find(folder.file("none.mcap") + ": No such file"),
       0U);

@@ -70,8 +70,8 @@ TEST(RecordingRefusals, NameWhatARecordingLost) {
   const TemporaryFolder folder;
   const std::string path = folder.file("run.mcap");
   const std::string expected =
-      "; expected a complete one, which alone decides alike; "
-      "--allow-incomplete reads what there is";
+      "; expected a complete recording, required for equal output; --allow-incomplete reads the "
+      "rest";
   const auto write = [&](const std::string& complete, const std::string& why) {
     std::filesystem::remove(path);
     McapWriter writer(path, "ros2", "glint");
@@ -127,7 +127,7 @@ TEST(RecordingRefusals, NameTheTopicOfAMessageThatIsNotWhole) {
     EXPECT_TRUE(writer.close(k_closing_metadata, {{k_fact_complete, "true"}}));
     EXPECT_EQ(error_of(path), ":byte " + std::to_string(chunk_at) + ": a message on " +
                                   std::string(topic) +
-                                  " that is not whole; expected the fields of its type");
+                                  " that is incomplete; expected the fields of its type");
   }
 }
 
@@ -290,7 +290,7 @@ TEST(RecordingOutcome, NamesTheUnfinishedFileThatHoldsTheBytes) {
   EXPECT_EQ(outcome.messages, 1u);
   const std::string part = folder.file("in/run.mcap.part");
   EXPECT_EQ(outcome.reason, part + ": rename at byte " + std::to_string(outcome.bytes) +
-                                ": No such file or directory; what was written stays in " + part);
+                                ": No such file or directory; the written part stays in " + part);
 }
 
 }  // namespace

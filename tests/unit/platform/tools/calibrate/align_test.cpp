@@ -120,7 +120,7 @@ TEST(Align, NamesWhatTooLittleMotionLeavesOpen) {
       [&] {
         (void)align_series(own_series(about_one), reference_series(about_one), {}, "one.tum");
       },
-      {"one.tum", "1.00]", "lever arm along it stays open", "two axes"});
+      {"one.tum", "1.00]", "lever arm along it is not observable", "two axes"});
   const Movement still{.turn_rad = {0, 0, 0},
                        .shift_m = {0, 0, 0},
                        .position_noise_m = 0.001,
@@ -132,7 +132,7 @@ TEST(Align, NamesWhatTooLittleMotionLeavesOpen) {
       [&] {
         (void)align_series(own_series(still), reference_series(still), settings, "still.tum");
       },
-      {"still.tum", "time offset open", "to and fro"});
+      {"still.tum", "time offset is not observable", "to and fro"});
 }
 
 TEST(Align, RefusesSeriesThatDoNotOverlapOrBelongTogether) {

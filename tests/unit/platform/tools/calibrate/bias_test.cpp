@@ -147,7 +147,7 @@ TEST(Bias, RefusesMotionTooFewPosesAndChance) {
       [&] { (void)calibrate_bias(std::span(poses).first(20), reference_of(how), {}, "few.tum"); },
       {"few.tum", "lie within the reference's time", "at least 30"});
   const StaticScene none{.shift_m = Vector3::Zero(), .turn_rad = Vector3::Zero(), .seed = 3};
-  test::expect_input_error([&] { (void)found_for(none); }, {"nothing to correct"});
+  test::expect_input_error([&] { (void)found_for(none); }, {"too small to correct"});
 }
 
 TEST(Bias, SaysApartWhatIsCorrectedAndWhere) {

@@ -114,10 +114,10 @@ TEST_F(CameraCalibration, SaysThatTheBoardMayHaveAnotherSizeOrHardlyTilted) {
   settings.columns = 9;
   settings.rows = 6;
   const std::vector<std::string> flat = chessboard_images(small_camera(), 0.02, 6);
-  test::expect_input_error([&] { (void)calibrate_camera(flat, settings); }, {"tilt the board"});
+  test::expect_input_error([&] { (void)calibrate_camera(flat, settings); }, {"tilt the target"});
   test::expect_input_error(
       [&] { (void)calibrate_camera({write("no.png", "no picture")}, settings); },
-      {"no.png", "no picture"});
+      {"no.png", "not an image"});
 }
 
 TEST_F(CameraCalibration, RefusesTablesThatHoldNoRays) {

@@ -115,10 +115,12 @@ TEST(Depth, LeavesOutRangesThatFitNothing) {
 
 TEST(Depth, SaysWhichPartTheRunLeavesOpen) {
   const DepthScene near{.near_m = 0.49, .far_m = 0.5};
-  test::expect_input_error([&] { (void)found_in(near); },
-                           {"scene.mcap", "mm_per_m stays open", "towards the camera and away"});
+  test::expect_input_error(
+      [&] { (void)found_in(near); },
+      {"scene.mcap", "mm_per_m is not observable", "towards the camera and away"});
   const DepthScene even{.dim_part = 0.9, .peak_exponent = 0};
-  test::expect_input_error([&] { (void)found_in(even); }, {"dim_mm stays open", "--no-brightness"});
+  test::expect_input_error([&] { (void)found_in(even); },
+                           {"dim_mm is not observable", "--no-brightness"});
   DepthCalibrationSettings by_range;  // without this term the offset includes the dimness bias
   by_range.brightness = Brightness::left_out;
   EXPECT_EQ(found_in(even, by_range).bias.low_signal_m, 0);
@@ -130,8 +132,9 @@ TEST(Depth, SaysWhichPartTheRunLeavesOpen) {
 TEST(Depth, SaysWhenBrightnessFollowsRange) {
   const DepthScene tied{
       .peak = 3000, .dim_part = 0.999, .peak_exponent = 1, .range_sigma_m = 0.004, .frames = 60};
-  test::expect_input_error([&] { (void)found_in(tied); },
-                           {"dim_mm stays open", "brightness follows range", "dim markers near"});
+  test::expect_input_error(
+      [&] { (void)found_in(tied); },
+      {"dim_mm is not observable", "brightness follows range", "dim markers near"});
 }
 
 TEST(Depth, RefusesAnotherTool) {
@@ -141,7 +144,7 @@ TEST(Depth, RefusesAnotherTool) {
     larger.markers_m[static_cast<std::size_t>(m)] *= 1.2;
   test::expect_input_error(
       [&] { (void)calibrate_depth(seen.observations, larger, {}, "other.mcap"); },
-      {"other.mcap", "do not fit", "tool's file"});
+      {"other.mcap", "do not fit", "tool file"});
 }
 
 TEST(BlobTable, IsReadAndRefusedWithItsLine) {
@@ -162,7 +165,7 @@ TEST(BlobTable, IsReadAndRefusedWithItsLine) {
   refused("0,256,256,nan,3000\n", {"blobs.csv:1: range_m is \"nan\""});
   refused("0,256,256,0.5,0\n", {"blobs.csv:1: peak is \"0\""});
   refused("0,256,256,0.5\n", {"blobs.csv:1", "five columns"});
-  refused("1,256,256,0.5,9\n0,256,256,0.5,9\n", {"blobs.csv:2: time_s runs backwards"});
+  refused("1,256,256,0.5,9\n0,256,256,0.5,9\n", {"blobs.csv:2: time_s decreases"});
   refused("0,-900,256,0.5,9\n", {"blobs.csv:1: the lens", "no ray"});
   refused("\n", {"holds no blob"});
 }

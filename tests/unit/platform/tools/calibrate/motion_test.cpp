@@ -215,7 +215,8 @@ TEST(Motion, SaysWhatARecordingLeavesOpen) {
   settings.noise = still.noise;
   test::expect_input_error(
       [&] { (void)calibrate_motion(std::span(&rest, 1), settings, "rest.tum"); },
-      {"rest.tum", "leaves the shift's", "open", "stand out", "starts, stops and turns"});
+      {"rest.tum", "does not determine the shift's noise", "above the declared noise",
+       "starts, stops and turns"});
   // Translation only: the rotation is unobservable.
   const SimulatedHand hand{.seconds = 12};
   Trajectory slid = moved_by(hand);
@@ -225,7 +226,7 @@ TEST(Motion, SaysWhatARecordingLeavesOpen) {
         sim::gaussian_vector({7, sim::Stream::reference, 3}, static_cast<std::uint64_t>(i)));
   test::expect_input_error(
       [&] { (void)calibrate_motion(std::span(&slid, 1), settings, "slid.tum"); },
-      {"slid.tum", "leaves the rotation's", "open"});
+      {"slid.tum", "does not determine the rotation's noise"});
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST(Noise, RefusesWhatIsNoRest) {
   std::vector<TimedPose> alike = rest(200, 1);
   for (TimedPose& pose : alike) pose.pose = alike.front().pose;
   test::expect_input_error([&] { (void)calibrate_noise(alike, "alike.tum"); },
-                           {"poses are all alike"});
+                           {"all poses are equal"});
 }
 
 TEST(Noise, OfTwoBodiesIsThatOfTheirRelativePose) {

@@ -110,7 +110,7 @@ TEST(Pivot, StopsAsSoonAsTheTipIsKnownWellEnough) {
 TEST(Pivot, NamesTheDirectionThatAToolTurnedAboutOneAxisLeavesOpen) {
   const PivotMotion turn{.tilt_rms_rad = {0, 0, 0.5}, .rotation_sigma_rad = 0.003};
   test::expect_input_error([&] { (void)calibrate_pivot(pivot_poses(turn, 200), {}, "one.tum"); },
-                           {"one.tum", "1.00]", "stays open", "tilt the tool"});
+                           {"one.tum", "1.00]", "is not observable", "tilt the tool"});
 }
 
 TEST(Pivot, RefusesTooFewPosesAndATipThatWanders) {
@@ -119,7 +119,7 @@ TEST(Pivot, RefusesTooFewPosesAndATipThatWanders) {
                            {"few.tum", "11 poses", "at least 12"});
   const PivotMotion wander{.position_sigma_m = 0.1};
   test::expect_input_error([&] { (void)calibrate_pivot(pivot_poses(wander, 100), {}, "far.tum"); },
-                           {"far.tum", "stand still"});
+                           {"far.tum", "at rest in a dent"});
 }
 
 }  // namespace

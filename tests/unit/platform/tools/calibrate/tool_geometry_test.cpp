@@ -194,7 +194,7 @@ TEST(ToolGeometry, RefusesAnotherToolThanTheDrawnOne) {
   ToolGeometrySettings settings;
   settings.drawn = drawn_tool(k_grid);
   test::expect_input_error([&] { (void)calibrate_tool(recorded({}), settings, "other.csv"); },
-                           {"other.csv", "of 4 markers found", "6 drawn"});
+                           {"other.csv", "of 4 found markers", "6 drawn"});
 }
 
 TEST(ToolGeometry, RefusesWhatIsNoToolInMotion) {
@@ -209,7 +209,7 @@ TEST(ToolGeometry, RefusesWhatIsNoToolInMotion) {
                            {"two.csv", "3 to 8"});
   how.markers = {{0, 0, 0}, {0, 0, 0.05}, {0, 0, 0.12}};
   test::expect_input_error([&] { (void)calibrate_tool(recorded(how), {}, "line.csv"); },
-                           {"line.csv", "on a line"});
+                           {"line.csv", "collinear"});
   how = {};
   how.turn_rad = 0.01;
   test::expect_input_error([&] { (void)calibrate_tool(recorded(how), {}, "still.csv"); },

@@ -104,11 +104,11 @@ TEST(CompressedCloud, IsRefusedByNameWhereItsLengthsLie) {
   expect_error(head(2) + "1234567", "7 bytes behind the header");
   expect_error(head(2) + body(lzf.size() + 1, 42, lzf), "compressed bytes; expected");
   expect_error(head(2) + body(0xffffffff, 42, lzf), "expected 4294967295");
-  expect_error(head(2) + body(lzf.size(), 43, lzf), "unpack to 43; expected 2 points of 21");
-  expect_error(head(3) + body(lzf.size(), 63, lzf), "do not unpack");
-  expect_error(head(2) + body(lzf.size() - 1, 42, lzf), "do not unpack");
+  expect_error(head(2) + body(lzf.size(), 43, lzf), "decompress to 43; expected 2 points of 21");
+  expect_error(head(3) + body(lzf.size(), 63, lzf), "invalid compressed bytes");
+  expect_error(head(2) + body(lzf.size() - 1, 42, lzf), "invalid compressed bytes");
   // 16 million points and their full size, in a few bytes: the reader reserves no memory.
-  expect_error(head(16'000'000) + body(lzf.size(), 336'000'000, lzf), "unpack to 336000000");
+  expect_error(head(16'000'000) + body(lzf.size(), 336'000'000, lzf), "decompress to 336000000");
 }
 
 // Every truncation and every changed byte either unpacks to the stated size or is refused. No case

@@ -53,8 +53,8 @@ TEST(DepthSequence, RefusesWhatIsMissingOrWrongByNameAndPlace) {
   expect_one("0 0 32\n0 60 24\n0 0 1\n", k_pose, good, "intrinsics.txt:line 3: another matrix");
   expect_one(k_pinhole, "1 0 0", good, "b.pose.txt:line 1: 3 numbers; expected 16");
   expect_one(k_pinhole, "1 0 0 nan\n", good, "b.pose.txt:line 1: a number that is not finite");
-  expect_one(k_pinhole, "1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1\n", good, "not rigid");
-  expect_one(k_pinhole, "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", good, "not rigid");
+  expect_one(k_pinhole, "1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1\n", good, "orthonormality error");
+  expect_one(k_pinhole, "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", good, "orthonormality error");
   expect_one(k_pinhole, "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 1 1\n", good, "another last row");
   expect_one(k_pinhole, k_pose, flat_picture(9, 8, 1), "b.depth.npy: 9 x 8 pixels; expected");
   expect_one(k_pinhole, k_pose, "rubbish", "no NumPy magic");
@@ -65,7 +65,7 @@ TEST(DepthSequence, RefusesAFolderWithoutPicturesOrAPictureWithoutPose) {
   EXPECT_NE(error_message_for(folder).find("camera-intrinsics.txt: cannot be read"),
             std::string::npos);
   folder.write("camera-intrinsics.txt", k_pinhole);
-  EXPECT_NE(error_message_for(folder).find("0 depth pictures"), std::string::npos);
+  EXPECT_NE(error_message_for(folder).find("0 depth images"), std::string::npos);
   folder.write("a.depth.png", "no picture");
   EXPECT_NE(error_message_for(folder).find("expected a PNG with one plane of 16 bits"),
             std::string::npos);

@@ -112,8 +112,7 @@ TEST(KeyTerminal, RefusesWhatIsNoTerminal) {
     const KeyTerminal keys(ends[0], "standard input");
     ADD_FAILURE() << "taken";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "standard input is no terminal; expected one whose keys are buttons");
+    EXPECT_STREQ(error.what(), "standard input is not a terminal; expected a terminal for --keys");
   }
   ::close(ends[0]);
   ::close(ends[1]);

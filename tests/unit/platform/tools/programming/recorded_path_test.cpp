@@ -77,7 +77,7 @@ TEST(RecordedPath, SaysWhyThereIsNone) {
   const TemporaryFolder folder;
   write_run(folder.file("none.mcap"), {});
   EXPECT_NE(
-      error_message(folder.file("none.mcap"), {}).find("no button was recorded; expected --button"),
+      error_message(folder.file("none.mcap"), {}).find("no recorded button; expected --button"),
       std::string::npos);
   write_run(folder.file("world.mcap"), {down(200), up(1000)}, ReferenceFrame::world);
   EXPECT_NE(error_message(folder.file("world.mcap"), {})

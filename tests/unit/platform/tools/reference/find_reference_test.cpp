@@ -118,7 +118,8 @@ TEST(FindReference, WantsAMaskOrASecondPlaceWhereHalfIsHidden) {
   EXPECT_LT(alone.found.judgement.visible_share(), 0.75);
   EXPECT_GT(alone.found.judgement.visible_share(), 0.4);
   EXPECT_EQ(alone.verdict, ReferenceVerdict::refused);
-  EXPECT_NE(alone.reason.find("from one place without a mask"), std::string::npos) << alone.reason;
+  EXPECT_NE(alone.reason.find("from one viewpoint without a mask"), std::string::npos)
+      << alone.reason;
   frames[0].mask = mask;
   EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::accepted);
   frames[0].mask.clear();

@@ -17,9 +17,9 @@ TEST(ReferenceChecks, NamesALinkThatTheSceneDoesNotExplain) {
   EXPECT_EQ(link_rejection_reason(three_links({300, 280, 5}), {}), "");
   const std::string unexplained = link_rejection_reason(three_links({300, 90, 5}), {});
   EXPECT_NE(unexplained.find("link 2"), std::string::npos) << unexplained;
-  EXPECT_NE(unexplained.find("30.0 % of it lies at the scene"), std::string::npos) << unexplained;
+  EXPECT_NE(unexplained.find("30.0 % of it lies on the scene"), std::string::npos) << unexplained;
   const std::string through = link_rejection_reason(three_links({300, 180, 120}), {});
-  EXPECT_NE(through.find("seen through 40.0 %"), std::string::npos) << through;
+  EXPECT_NE(through.find("free space at 40.0 %"), std::string::npos) << through;
 }
 
 TEST(ReferenceChecks, JudgesNoLinkOfWhichLittleIsSeen) {

@@ -25,19 +25,20 @@ TEST(MeshBytes, ComeBackAsTheyWere) {
 }
 
 TEST(MeshBytes, CarryTheReasonOfAFailure) {
-  expect_input_error([] { (void)mesh_of_bytes(mesh_error_bytes("no mesh: \x1B[2J"), "a.dae"); },
-                     {"a.dae: no mesh: ?[2J"});
+  expect_input_error([] { (void)mesh_of_bytes(mesh_error_bytes("not a mesh: \x1B[2J"), "a.dae"); },
+                     {"a.dae: not a mesh: ?[2J"});
 }
 
 TEST(MeshBytes, AreRefusedWhereTheyAreNoMesh) {
   const std::string whole = mesh_bytes(two_triangles());
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    expect_input_error([&] { (void)mesh_of_bytes(whole.substr(0, size), "a.dae"); }, {"no mesh"});
+    expect_input_error([&] { (void)mesh_of_bytes(whole.substr(0, size), "a.dae"); },
+                       {"invalid mesh"});
   }
-  expect_input_error([&] { (void)mesh_of_bytes(whole + "x", "a.dae"); }, {"no mesh"});
+  expect_input_error([&] { (void)mesh_of_bytes(whole + "x", "a.dae"); }, {"invalid mesh"});
   std::string many = whole;
   many.replace(5, 4, "\xFF\xFF\xFF\x7F");
-  expect_input_error([&] { (void)mesh_of_bytes(many, "a.dae"); }, {"no mesh"});
+  expect_input_error([&] { (void)mesh_of_bytes(many, "a.dae"); }, {"invalid mesh"});
   Mesh endless = two_triangles();
   endless.triangles[1].b.y() = std::numeric_limits<float>::infinity();
   expect_input_error([&] { (void)mesh_of_bytes(mesh_bytes(endless), "a.dae"); },

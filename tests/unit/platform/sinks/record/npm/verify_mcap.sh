@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes recordings and has programs that are not Glint's read them.
+# Makes recordings and reads them with other programs.
 #   verify_mcap.sh GLINT_MAKE_RECORDINGS WORK_FOLDER
-# Exit 77: skipped, with a line that says why.
+# Exit 77: skipped, with a line that states the reason.
 set -euo pipefail
 
 make_recordings=$1
