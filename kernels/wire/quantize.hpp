@@ -26,7 +26,7 @@ struct Quantized {
   const double scaled = value * per_unit;
   const double size = std::abs(scaled);
   if (!(size < 0x1p53)) return {};
-  const double below = std::floor(size);
+  const auto below = static_cast<double>(static_cast<std::int64_t>(size));  // floor may be a call
   const double nearest = size - below >= 0.5 ? below + 1 : below;
   const auto whole = static_cast<std::int64_t>(scaled < 0 ? -nearest : nearest);
   if (whole < low || whole > high) return {};

@@ -34,10 +34,10 @@ void add_publish_options(CLI::App& command, PublishOptions& options) {
 Time publishing_time() { return Time{dds_time()}; }
 
 void keep_publishing(const MapPublisher& publisher, const PublishOptions& options) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   int readers_max = 0;
-  while (Clock::now() < end) {
+  while (std::chrono::steady_clock::now() < end) {
     readers_max = std::max(readers_max, publisher.matched_readers());
     std::this_thread::sleep_for(k_poll_period);
   }

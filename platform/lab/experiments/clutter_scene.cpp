@@ -114,7 +114,7 @@ ToolSet mirror_twins(const Tool& tool) {
 
 ToolSet nearly_equal_tools(double sigmas) {
   constexpr int k_steps_max = 200;
-  constexpr double k_step_m = 0.0001;
+  constexpr double k_move_m = 0.0001;
   const PointTool ndi = ndi_8700339();
   ToolSet tools;
   tools.count = 2;
@@ -125,7 +125,7 @@ ToolSet nearly_equal_tools(double sigmas) {
   DistinctionSettings settings;
   settings.limit_sigmas = sigmas;
   for (int step = 0; step < k_steps_max; ++step) {
-    moved.y() -= k_step_m;
+    moved.y() -= k_move_m;
     prepare(tools.items[1]);
     bool apart = true;
     for (const WrongLabeling& labeling : distinguish(tools, settings).wrong_labelings)

@@ -93,13 +93,15 @@ TEST_F(ImageNodes, FindBlobsOfAllBandsAndCountTheirRunsAndPixels) {
   const BlobWork work = find_blobs(frame_, in_order, node.settings,
                                    {std::span(predictions_->markers_px.data(), 2), false, 0},
                                    *scratch, *expected, limits_);
-  EXPECT_EQ(node.counts(), (LoopCounts{{1, work.runs, work.distances, work.blobs, work.pixels}}));
+  EXPECT_EQ(node.counts(),
+            (LoopCounts{{1, work.runs, work.distances, work.blobs, work.pixels, work.rescans}}));
   EXPECT_EQ(node.counts()[1], 3 * 6);
   EXPECT_EQ(node.counts()[3], 3);
   EXPECT_GT(node.counts()[4], 3 * 36);
   const BlobWork worst = blob_work_max(limits_);
-  EXPECT_EQ(FindBlobs::worst(limits_),
-            (LoopCounts{{1, worst.runs, worst.distances, worst.blobs, worst.pixels}}));
+  EXPECT_EQ(
+      FindBlobs::worst(limits_),
+      (LoopCounts{{1, worst.runs, worst.distances, worst.blobs, worst.pixels, worst.rescans}}));
 }
 
 TEST_F(ImageNodes, BackProjectBlobsAndCountTheirPixelsAndSamples) {

@@ -74,14 +74,14 @@ TEST_F(ReferenceListening, SaysWhatWasNotHeardAndWhoPublishesIt) {
                                    [&](double, const std::string&) { speaker.publish_joints(); });
         (void)listener.description();
       },
-      {"0.3 s on lo, domain 0", "rt/robot_description: nothing heard", "robot_state_publisher",
-       "--urdf", "rt/initialpose: nothing heard", "2D Pose Estimate", "--seed"});
+      {"0.3 s on lo, domain 0", "rt/robot_description: no message", "robot_state_publisher",
+       "--urdf", "rt/initialpose: no message", "2D Pose Estimate", "--seed"});
   expect_input_error(
       [&] {
         ReferenceListener listener(test_settings(), {false, true, false}, little, {});
         (void)listener.wait_for_inputs({"turn"});
       },
-      {"rt/joint_states: nothing heard", "joint_state_publisher", "--joints"});
+      {"rt/joint_states: no message", "joint_state_publisher", "--joints"});
 }
 
 TEST_F(ReferenceListening, NamesTheJointThatNoStateHas) {
