@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/wire/bits.hpp"
 
 namespace glint {
@@ -107,7 +108,7 @@ inline constexpr int k_can_each_tick = 0;
 inline constexpr int k_can_on_event = -1;
 
 // Not a constant expression: the name is not in the table.
-void no_such_can_name();
+void no_such_can_name() noexcept GLINT_NONBLOCKING;
 
 struct CanMessageLayout {
   std::string_view name;
