@@ -7,8 +7,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -58,6 +60,29 @@ struct SelectedCommand {
   return std::string("unknown ") + kind + " " + word + nearest_name_text(word, known) + list;
 }
 
+// Rejects what CLI11 would convert: it wraps a negative number into an unsigned one and clamps one
+// that is too large. Of all integer options, of the subcommands too.
+inline void check_integers(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const bool is_unsigned = option->get_type_name().starts_with("UINT");
+    if (!is_unsigned && !option->get_type_name().starts_with("INT")) continue;
+    option->check([is_unsigned](const std::string& text) -> std::string {
+      errno = 0;
+      if (is_unsigned) {
+        (void)std::strtoull(text.c_str(), nullptr, 0);
+      } else {
+        (void)std::strtoll(text.c_str(), nullptr, 0);
+      }
+      const bool is_negative = text.find('-') != std::string::npos;
+      if (errno != ERANGE && !(is_unsigned && is_negative)) return "";
+      return text + (is_unsigned ? ": expected a whole number from 0 to 2^64 - 1"
+                                 : ": expected a whole number of at most 63 bits");
+    });
+  }
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    check_integers(*command);
+}
+
 // Call before any file is opened. Opens closed standard streams on /dev/null; else the first file
 // opened would get such a stream's descriptor and receive the printed table. Ignores SIGXFSZ, so
 // that a write beyond the file size limit returns an error.
@@ -75,12 +100,13 @@ inline void prepare_file_descriptors() {
 
 // body() parses by `app`, does the work and returns the program's own exit code.
 template <class Body>
-[[nodiscard]] int exit_code_of(const CLI::App& app, const char* program, const Body& body) {
+[[nodiscard]] int exit_code_of(CLI::App& app, const char* program, const Body& body) {
   const auto fails = [&](const std::exception& error, int code) {
     std::fprintf(stderr, "%s: %s\n", program, one_line(error.what()).c_str());
     return code;
   };
   prepare_file_descriptors();
+  check_integers(app);
   try {
     const int code = body();
     // Fails if the output is incomplete, as on a full disk.
