@@ -12,29 +12,14 @@
 #include "kernels/image/centroid_variance.hpp"
 #include "kernels/image/marker_misfit.hpp"
 #include "kernels/image/roi_threshold.hpp"
+#include "tests/unit/kernels/image/blob_finder.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 
 namespace glint::blob_fields_test {
 namespace {
 
+using test::BlobFinder;
 using test::TestImage;
-
-struct Finder {
-  std::unique_ptr<Runs> runs = std::make_unique<Runs>();
-  std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
-  std::unique_ptr<Blobs> blobs = std::make_unique<Blobs>();
-  BlobSettings settings{1, 100000, 500, 0xFFFF};
-  std::vector<Vector2> predicted;
-  bool everywhere = false;
-  Limits limits;
-
-  BlobWork operator()(const TestImage& picture) {
-    const Frame frame = picture.frame();
-    threshold_runs(frame, whole_frame(frame), settings.threshold, {}, *runs, limits);
-    const Runs* bands[] = {runs.get()};
-    return find_blobs(frame, bands, settings, {predicted, everywhere, 3}, *scratch, *blobs, limits);
-  }
-};
 
 // Returns an image of `count` isolated pixels above the threshold, 20 a row.
 TestImage dots(int count) {
@@ -50,7 +35,7 @@ TEST(Blobs, HaveTheirComponentsBoxAndTheirCentroidsFigures) {
     for (int x = 11; x < 19; ++x) p(x, y) = static_cast<std::uint16_t>(3000 + 17 * x + 5 * y);
   p(11, 20) = 60;  // outside the blob: the area differs from the box's
   p(14, 22) = 7777;
-  Finder find;
+  BlobFinder find;
   find.settings.noise = {20, 0.5, 0.02};
   find(p);
   ASSERT_EQ(find.blobs->count, 1);
@@ -84,7 +69,7 @@ TEST(Blobs, AddTheirShapesVarianceAlongEachAxis) {
     TestImage p(60, 50);
     for (int y = c.y0; y < c.y0 + c.height; ++y)
       for (int x = c.x0; x < c.x0 + c.width; ++x) p(x, y) = 4000;
-    Finder find;
+    BlobFinder find;
     find(p);
     ASSERT_EQ(find.blobs->count, 1);
     const Component& component = find.scratch->components[0];
@@ -102,7 +87,7 @@ TEST(Blobs, AreThoseOfAFreshFinderWhateverTheFrameBeforeHad) {
   TestImage few(80, 80);
   test::add_disc(few, 30.3, 20.6, 3, 9000);
   test::add_disc(few, 50.3, 40.6, 4, 9000);
-  Finder used, fresh;
+  BlobFinder used, fresh;
   used.limits.blobs = fresh.limits.blobs = 16;
   used(dots(400));
   EXPECT_EQ(used.blobs->reason, Reason::blobs_full);
@@ -129,7 +114,7 @@ TEST(Blobs, MissWhatAnyBandLost) {
       limits.runs_per_band = band == full ? 3 : k_runs_per_band_max;
       threshold_runs(frame, whole_frame(frame), 500, {band, 20}, *bands[std::size_t(band)], limits);
     }
-    Finder find;
+    BlobFinder find;
     const Runs* both[] = {bands[0].get(), bands[1].get()};
     find_blobs(frame, both, find.settings, {}, *find.scratch, *find.blobs);
     EXPECT_EQ(find.blobs->reason, Reason::runs_full) << full;
@@ -151,7 +136,7 @@ TEST(Blobs, KeepThoseOfAPlainSortByDistanceAndMisfit) {
       p(static_cast<int>(random() % 200), static_cast<int>(random() % 200)) = 700;
     p(0, 0) = 700;  // first and last component; fit no marker
     p(199, 199) = 700;
-    Finder find;
+    BlobFinder find;
     find.settings.sizes = marker_sizes({0.0055, 0.0055, 0.8, 253, 0.15, 1.0, 0.001, 4090});
     find.predicted = {{5, 5}, {190, 190}};
     find(p);

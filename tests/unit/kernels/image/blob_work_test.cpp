@@ -8,29 +8,14 @@
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/grown_box.hpp"
 #include "kernels/image/roi_threshold.hpp"
+#include "tests/unit/kernels/image/blob_finder.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 
 namespace glint::blob_work_test {
 namespace {
 
+using test::BlobFinder;
 using test::TestImage;
-
-struct Finder {
-  std::unique_ptr<Runs> runs = std::make_unique<Runs>();
-  std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
-  std::unique_ptr<Blobs> blobs = std::make_unique<Blobs>();
-  BlobSettings settings{1, 100000, 500, 0xFFFF};
-  std::vector<Vector2> predicted;
-  bool everywhere = false;
-  Limits limits;
-
-  BlobWork operator()(const TestImage& picture) {
-    const Frame frame = picture.frame();
-    threshold_runs(frame, whole_frame(frame), settings.threshold, {}, *runs, limits);
-    const Runs* bands[] = {runs.get()};
-    return find_blobs(frame, bands, settings, {predicted, everywhere, 3}, *scratch, *blobs, limits);
-  }
-};
 
 // Returns an image of `count` isolated pixels above the threshold, 20 a row.
 TestImage dots(int count) {
@@ -40,7 +25,7 @@ TestImage dots(int count) {
 }
 
 TEST(BlobWork, CountsRunsBlobsAndTheGrownBoxesPixels) {
-  Finder find;
+  BlobFinder find;
   TestImage p(100, 60);
   for (int y = 10; y < 14; ++y)
     for (int x = 20; x < 25; ++x) p(x, y) = 2000;
@@ -58,7 +43,7 @@ TEST(BlobWork, OfTwoBlobsIsTheSumOfBoth) {
     TestImage p(120, 60);
     if (left) test::add_disc(p, 30.2, 30.7, 4, 9000);
     if (right) test::add_disc(p, 80.4, 25.1, 6.3, 9000);
-    return Finder{}(p);
+    return BlobFinder{}(p);
   };
   const BlobWork one = work_of(true, false), other = work_of(false, true),
                  both = work_of(true, true);
@@ -72,7 +57,7 @@ TEST(BlobWork, CountsNoPixelsOfABoxThatIsNotWeighed) {
     for (const bool wide : {false, true}) {
       TestImage p(100, 100);
       for (int i = 0; i < side; ++i) (wide ? p(10 + i, 20) : p(20, 10 + i)) = 2000;
-      Finder find;
+      BlobFinder find;
       const BlobWork work = find(p);
       EXPECT_EQ(work.pixels > 0, side == k_grown_box_max) << side << wide;
       EXPECT_EQ(find.blobs->reason, Reason::none) << "a large blob lacks nothing";
@@ -82,7 +67,7 @@ TEST(BlobWork, CountsNoPixelsOfABoxThatIsNotWeighed) {
 }
 
 TEST(BlobWork, CountsFourDistancesAPredictionAndTheFocusOnlyWhereThereAreTooMany) {
-  Finder find;
+  BlobFinder find;
   find.limits.blobs = 10;
   find.predicted = {{20, 20}, {30, 30}, {40, 20}};
   EXPECT_EQ(find(dots(10)).distances, 0);
@@ -101,7 +86,7 @@ TEST(BlobWork, CountsFourDistancesAPredictionAndTheFocusOnlyWhereThereAreTooMany
 
 // One tool of two markers: find_blobs ignores further predictions.
 TEST(BlobWork, LooksAtNoMorePredictionsThanTheCellsToolsHaveMarkers) {
-  Finder find;
+  BlobFinder find;
   find.limits.blobs = 8;
   find.limits.tools = 1;
   find.limits.markers_per_tool = 2;
@@ -112,7 +97,7 @@ TEST(BlobWork, LooksAtNoMorePredictionsThanTheCellsToolsHaveMarkers) {
 
 TEST(BlobWork, KeepsAsManyAsTheLimitAndNeverMoreThanThereIsRoomFor) {
   for (const int most : {-4, 0, 1, 7, k_blobs_max, k_blobs_max + 50}) {
-    Finder find;
+    BlobFinder find;
     find.limits.blobs = most;
     const BlobWork work = find(dots(400));
     const int kept = std::clamp(most, 0, k_blobs_max);
@@ -131,7 +116,7 @@ TEST(BlobWork, PaysForABoxThatCostsJustWhatIsLeft) {
   p(12, 10) = 9000;
   const int cost = 8 * 8 * 2;
   for (const int less : {0, 1}) {
-    Finder find;
+    BlobFinder find;
     find.limits.blobs = 1;
     find.limits.centroid_pixels_per_blob = cost - less;
     const BlobWork work = find(p);

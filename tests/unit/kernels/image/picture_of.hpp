@@ -60,6 +60,12 @@ inline TestImage image_of(const std::vector<std::string>& rows) {
   return out;
 }
 
+// Sets the pixels x0 <= x < x1, y0 <= y < y1.
+inline void add_surface(TestImage& picture, int x0, int y0, int x1, int y1, int value) {
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) picture(x, y) = static_cast<std::uint16_t>(value);
+}
+
 // Adds a disc of uniform brightness; an edge pixel is the mean of 8 x 8 samples.
 inline void add_disc(TestImage& picture, double cx, double cy, double radius, double brightness) {
   const int x0 = std::max(static_cast<int>(cx - radius) - 2, 0);

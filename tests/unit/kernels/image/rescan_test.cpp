@@ -14,38 +14,22 @@
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/components.hpp"
 #include "kernels/image/roi_threshold.hpp"
+#include "tests/unit/kernels/image/blob_finder.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 #include "tests/unit/repetitions.hpp"
 
 namespace glint::rescan_test {
 namespace {
 
+using test::BlobFinder;
 using test::TestImage;
 
-struct Finder {
-  std::unique_ptr<Runs> runs = std::make_unique<Runs>();
-  std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
-  std::unique_ptr<Blobs> blobs = std::make_unique<Blobs>();
-  BlobSettings settings{1, 100, 40, 0xFFFF};
-  Limits limits;
-
-  BlobWork operator()(const TestImage& picture) {
-    const Frame frame = picture.frame();
-    threshold_runs(frame, whole_frame(frame), settings.threshold, {}, *runs, limits);
-    const Runs* bands[] = {runs.get()};
-    return find_blobs(frame, bands, settings, {}, *scratch, *blobs, limits);
-  }
-};
-
-void add_surface(TestImage& p, int x0, int y0, int x1, int y1, int value) {
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) p(x, y) = static_cast<std::uint16_t>(value);
-}
+constexpr BlobSettings k_settings{1, 100, 40, 0xFFFF};
 
 // A marker of 3 px radius and 180 counts on a surface of 60.
 TestImage marker_on_surface(double x, double y) {
   TestImage p(90, 70, 4);
-  add_surface(p, 10, 8, 80, 62, 60);
+  test::add_surface(p, 10, 8, 80, 62, 60);
   test::add_disc(p, x, y, 3, 120);
   return p;
 }
@@ -122,7 +106,7 @@ std::vector<Region> rescanned_reference(const TestImage& p, int threshold, std::
   return regions;
 }
 
-void expect_equals_reference(const TestImage& p, const Finder& find, int plain, int seed) {
+void expect_equals_reference(const TestImage& p, const BlobFinder& find, int plain, int seed) {
   const auto regions = rescanned_reference(p, find.settings.threshold, find.settings.max_area_px);
   ASSERT_EQ(find.scratch->component_count - plain, static_cast<int>(regions.size())) << seed;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -148,8 +132,8 @@ TestImage random_scene(std::mt19937& random) {
   TestImage p(20 + below(90), 20 + below(50), 5);
   for (int i = below(4); i >= 0; --i) {
     const int x = below(p.width), y = below(p.height);
-    add_surface(p, x, y, std::min(x + 10 + below(70), p.width),
-                std::min(y + 10 + below(40), p.height), 30 + below(90));
+    test::add_surface(p, x, y, std::min(x + 10 + below(70), p.width),
+                      std::min(y + 10 + below(40), p.height), 30 + below(90));
   }
   for (int i = below(12); i > 0; --i)
     test::add_disc(p, below(p.width), below(p.height), 1 + 0.1 * below(40), 20 + below(100));
@@ -159,7 +143,7 @@ TestImage random_scene(std::mt19937& random) {
 }
 
 TEST(Rescan, EqualsFloodsOfPixelsInBothPixelFormats) {
-  Finder find;  // one scratch for all: results do not depend on the last frame
+  BlobFinder find{k_settings};  // one scratch for all: results do not depend on the last frame
   int components = 0, second_level = 0;
   const int scenes = test::repetitions(600, 40);
   for (int seed = 0; seed < scenes; ++seed) {
@@ -183,7 +167,7 @@ TEST(Rescan, EqualsFloodsOfPixelsInBothPixelFormats) {
 TEST(Rescan, LeavesAFrameInsideTheGateAsItIs) {
   TestImage p(90, 70, 4);
   test::add_disc(p, 30, 30, 3, 180);
-  Finder find;
+  BlobFinder find{k_settings};
   EXPECT_EQ(find(p).rescans, 0);
   EXPECT_EQ(find.scratch->component_count, 1);
   EXPECT_EQ(find.scratch->components[0].level, 0);
@@ -194,9 +178,9 @@ TEST(Rescan, SearchesLevelByLevel) {
   TestImage p(120, 100, 4);
   const int values[] = {60, 200, 700, 2400};
   for (int i = 0; i < 4; ++i)
-    add_surface(p, 5 + 10 * i, 5 + 10 * i, 115 - 10 * i, 95 - 10 * i, values[i]);
-  add_surface(p, 55, 45, 58, 48, 9000);
-  Finder find;
+    test::add_surface(p, 5 + 10 * i, 5 + 10 * i, 115 - 10 * i, 95 - 10 * i, values[i]);
+  test::add_surface(p, 55, 45, 58, 48, 9000);
+  BlobFinder find{k_settings};
   find.settings.max_area_px = 400;
   find(p);
   ASSERT_EQ(find.blobs->count, 1);
@@ -206,7 +190,7 @@ TEST(Rescan, SearchesLevelByLevel) {
 
 TEST(Rescan, KeepsTheFirstRunsAndReportsMore) {
   const TestImage p = marker_on_surface(40, 30);
-  Finder whole;
+  BlobFinder whole{k_settings};
   const BlobWork needed = whole(p);
   ASSERT_EQ(whole.blobs->count, 1);
   Runs& runs = *whole.runs;
@@ -228,7 +212,7 @@ TEST(Rescan, SharesTheRunsOfAllBands) {
   threshold_runs(p.frame(), whole_frame(p.frame()), 40, {}, *runs);
   ASSERT_EQ(runs->count, 54);
   for (const bool fits : {false, true}) {
-    Finder find;
+    BlobFinder find{k_settings};
     find.limits.runs_per_band = fits ? 16 : 15;
     std::array<Runs, 4> parts;
     std::array<const Runs*, 4> bands;
@@ -248,7 +232,7 @@ TEST(Rescan, SharesTheRunsOfAllBands) {
 TEST(Rescan, ScansAtMostTheBlocksOfAFrame) {
   TestImage p(96, 64, 60);
   test::add_disc(p, 40, 60, 3, 120);
-  Finder find;
+  BlobFinder find{k_settings};
   find.limits.width = p.width;
   find.limits.height = p.height;
   EXPECT_EQ(rescan_blocks_max(find.limits), 3 * 64);

@@ -8,33 +8,17 @@
 
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/roi_threshold.hpp"
+#include "tests/unit/kernels/image/blob_finder.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 #include "tests/unit/repetitions.hpp"
 
 namespace glint::surface_markers_test {
 namespace {
 
+using test::BlobFinder;
 using test::TestImage;
 
-struct Finder {
-  std::unique_ptr<Runs> runs = std::make_unique<Runs>();
-  std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
-  std::unique_ptr<Blobs> blobs = std::make_unique<Blobs>();
-  BlobSettings settings{1, 100, 40, 0xFFFF};
-  Limits limits;
-
-  BlobWork operator()(const TestImage& picture) {
-    const Frame frame = picture.frame();
-    threshold_runs(frame, whole_frame(frame), settings.threshold, {}, *runs, limits);
-    const Runs* bands[] = {runs.get()};
-    return find_blobs(frame, bands, settings, {}, *scratch, *blobs, limits);
-  }
-};
-
-void add_surface(TestImage& p, int x0, int y0, int x1, int y1, int value) {
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) p(x, y) = static_cast<std::uint16_t>(value);
-}
+constexpr BlobSettings k_settings{1, 100, 40, 0xFFFF};
 
 // Mean of (error / stated sigma)^2, both axes, of markers of 2,700 counts on a surface of 606 that
 // ends at column x1; out: the errors' root mean square, px.
@@ -42,7 +26,7 @@ double nees_on_surface(int x1, double& rms_px) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> shift(0, 1);
   std::normal_distribution<double> noise(0, 1);
-  Finder find;
+  BlobFinder find{k_settings};
   find.settings.threshold = 250;
   find.settings.noise = {6, 0.35, 0.01};
   double nees = 0, square = 0;
@@ -50,7 +34,7 @@ double nees_on_surface(int x1, double& rms_px) {
   for (int i = 0; i < count / 2; ++i) {
     const Vector2 at(40 + shift(random), 30 + shift(random));
     TestImage p(90, 70, 5), disc(90, 70);
-    add_surface(p, 10, 8, x1, 62, 606);
+    test::add_surface(p, 10, 8, x1, 62, 606);
     test::add_disc(disc, at.x(), at.y(), 3, 1000);
     for (std::size_t k = 0; k < p.pixels_16.size(); ++k) {
       const double covered = disc.pixels_16[k] / 1000.0;
@@ -94,7 +78,7 @@ TEST(SurfaceMarkers, FindsNoCandidateInATexture) {
     for (int y = 8; y < 62; ++y)
       for (int x = 10; x < 80; ++x)
         p(x, y) = static_cast<std::uint16_t>((x / pitch + y / pitch) % 2 == 0 ? 60 : 200 + x % 16);
-    Finder find;
+    BlobFinder find{k_settings};
     const BlobWork work = find(p);
     EXPECT_GT(work.rescans, 0) << pitch;
     EXPECT_EQ(find.scratch->component_count, 1) << pitch;
@@ -107,9 +91,9 @@ TEST(SurfaceMarkers, FindsNoCandidateInATexture) {
 TEST(SurfaceMarkers, RequiresAMarkersContrast) {
   for (const int value : {100, 134, 135, 200}) {
     TestImage p(90, 70, 4);
-    add_surface(p, 10, 8, 80, 62, 60);
-    add_surface(p, 40, 30, 43, 33, value);
-    Finder find;
+    test::add_surface(p, 10, 8, 80, 62, 60);
+    test::add_surface(p, 40, 30, 43, 33, value);
+    BlobFinder find{k_settings};
     find(p);
     ASSERT_EQ(find.scratch->component_count, 2) << value;
     EXPECT_EQ(find.scratch->components[1].level, 90) << value;

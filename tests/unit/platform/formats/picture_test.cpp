@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -70,7 +71,9 @@ TEST(Picture, ShowsADimRoomBesideABrightMarker) {
 
 TEST(Picture, RefusesAPathThatCannotBeWritten) {
   const Scene scene;
-  const std::string path = "/nonexistent/p.png";
+  const TemporaryFolder folder;
+  std::ofstream(folder.path("file"));
+  const std::string path = folder.path("file/p.png");
   const std::string message = message_of<InputError>([&] {
     write_detection_image(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, {});
   });
