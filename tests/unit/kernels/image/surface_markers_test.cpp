@@ -10,7 +10,6 @@
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/blob_finder.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
-#include "tests/unit/repetitions.hpp"
 
 namespace glint::surface_markers_test {
 namespace {
@@ -30,7 +29,7 @@ double nees_on_surface(int x1, double& rms_px) {
   find.settings.threshold = 250;
   find.settings.noise = {6, 0.35, 0.01};
   double nees = 0, square = 0;
-  const int count = 2 * test::repetitions(300, 40);
+  constexpr int count = 2 * 300;
   for (int i = 0; i < count / 2; ++i) {
     const Vector2 at(40 + shift(random), 30 + shift(random));
     TestImage p(90, 70, 5), disc(90, 70);
