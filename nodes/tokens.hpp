@@ -12,7 +12,6 @@
 #include "kernels/pose/expected_pose.hpp"
 #include "kernels/pose/few_markers.hpp"
 #include "kernels/pose/labeling.hpp"
-#include "kernels/pose/lever_arm.hpp"
 #include "kernels/pose/noise_estimate.hpp"
 #include "kernels/pose/systematic_covariance.hpp"
 #include "kernels/pose/tool.hpp"
@@ -67,10 +66,7 @@ struct Prediction {
 
   // Position covariance of a marker at `from_centroid_m` from the marker centroid, in the tool
   // frame.
-  [[nodiscard]] Matrix3 marker_position_covariance(const Vector3& from_centroid_m) const {
-    const Eigen::Matrix<double, 3, 6> j = point_by_pose(T_camera_tool.rotation * from_centroid_m);
-    return j * covariance * j.transpose();
-  }
+  [[nodiscard]] Matrix3 marker_position_covariance(const Vector3& from_centroid_m) const;
 };
 struct Predictions {
   std::array<Prediction, k_tools_max> tools;
@@ -130,21 +126,10 @@ struct FittedTools {
 
 // Pose of the centroid of a tool's markers in the camera frame, with its covariance about the
 // camera's axes. At the centroid, translation and rotation are nearly uncorrelated.
-[[nodiscard]] inline UncertainPose centroid_pose_of(const FittedTool& found, const Tool& tool,
-                                                    Time time) {
-  const Pose& seen = found.T_camera_tool;
-  const Vector3 middle = tool.middle_m();
-  return {time,
-          {seen.rotation, seen * middle},
-          moved_covariance(found.covariance, seen.rotation * (middle - tool.tip_m))};
-}
+[[nodiscard]] UncertainPose centroid_pose_of(const FittedTool& found, const Tool& tool, Time time);
 // The same pose as input to the motion filter: the relinearised measurement where there is one.
-[[nodiscard]] inline UncertainPose filter_measurement_of(const FittedTool& found, const Tool& tool,
-                                                         Time time) {
-  if (!found.has_relinearised) return centroid_pose_of(found, tool, time);
-  const Pose& near = found.relinearised_T_camera_tool;
-  return {time, {near.rotation, near * tool.middle_m()}, found.relinearised_covariance};
-}
+[[nodiscard]] UncertainPose filter_measurement_of(const FittedTool& found, const Tool& tool,
+                                                  Time time);
 
 // Head pose of this frame after drift correction by the reference body, and the state for the next
 // frame.
@@ -214,11 +199,7 @@ struct TipPosition {
   // Systematic covariance of the tip from that of the marker centroid. `axes_rotation` rotates the
   // tool's axes to the covariance's axes.
   [[nodiscard]] Matrix6 systematic_of(const Matrix6& of_middle,
-                                      const Quaternion& axes_rotation) const {
-    Matrix6 covariance = moved_covariance(of_middle, axes_rotation * arm_m);
-    covariance.diagonal().head<3>().array() += sigma_m * sigma_m;
-    return covariance;
-  }
+                                      const Quaternion& axes_rotation) const;
 };
 [[nodiscard]] inline TipPosition tip_of(const Tool& tool) {
   return {tool.tip_m - tool.middle_m(), tool.tip_sigma_m};

@@ -25,28 +25,11 @@ namespace glint {
   return j;
 }
 
-// A pose's covariance with its reference moved by `offset`: J C J' with J = pose_by_pose(offset),
-// without the products by ones and zeros.
-[[nodiscard]] inline Matrix6 moved_covariance(const Matrix6& covariance, const Vector3& offset) {
-  const Matrix3 turned = point_by_pose(offset).rightCols<3>();
-  const Matrix3 position_rotation =
-      covariance.topRightCorner<3, 3>() + turned * covariance.bottomRightCorner<3, 3>();
-  Matrix6 moved = covariance;
-  moved.topLeftCorner<3, 3>() +=
-      turned * covariance.bottomLeftCorner<3, 3>() + position_rotation * turned.transpose();
-  moved.topRightCorner<3, 3>() = position_rotation;
-  moved.bottomLeftCorner<3, 3>() = position_rotation.transpose();
-  return moved;
-}
+// A pose's covariance with its reference moved by `offset`: J C J' with J = pose_by_pose(offset).
+[[nodiscard]] Matrix6 moved_covariance(const Matrix6& covariance, const Vector3& offset);
 
 // A pose's covariance about the axes of the frame that `rotation` maps to.
-[[nodiscard]] inline Matrix6 rotated_covariance(const Matrix6& covariance,
-                                                const Quaternion& rotation) {
-  Matrix6 turn = Matrix6::Zero();
-  turn.topLeftCorner<3, 3>() = rotation.toRotationMatrix();
-  turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
-  return turn * covariance * turn.transpose();
-}
+[[nodiscard]] Matrix6 rotated_covariance(const Matrix6& covariance, const Quaternion& rotation);
 
 // Upper bound on the variance in any direction: no eigenvalue exceeds the largest row sum
 // (Gershgorin 1931).

@@ -10,7 +10,7 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp ${CMAKE_CURRENT_LIST_DIR}/labeling_search.cpp
   ${CMAKE_CURRENT_LIST_DIR}/correspond.cpp ${CMAKE_CURRENT_LIST_DIR}/assign.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fit_covariance.cpp ${CMAKE_CURRENT_LIST_DIR}/bias_correction.cpp)
-target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp
+target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp ${CMAKE_CURRENT_LIST_DIR}/lever_arm.cpp
   ${CMAKE_CURRENT_LIST_DIR}/calibration_errors.cpp
   ${CMAKE_CURRENT_LIST_DIR}/weighted_marker.cpp ${CMAKE_CURRENT_LIST_DIR}/marker_sight.cpp
   ${CMAKE_CURRENT_LIST_DIR}/normal_equations.cpp

@@ -18,30 +18,16 @@ double clamped(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 
 }  // namespace
 
-// Solves the quadratic of an infinite cylinder, with the axial components of ray and centre
-// removed. If the hit is beyond an end, the sphere of that end applies.
-Hit trace(const Capsule& capsule, const Vector3& ray) {
-  const Vector3 axis = capsule.b - capsule.a;
-  const double length2 = axis.squaredNorm();
-  if (length2 > 0) {
-    const double ray_axis = ray.dot(axis), start_axis = capsule.a.dot(axis);
-    const double a = length2 - ray_axis * ray_axis;
-    const double b = length2 * ray.dot(capsule.a) - ray_axis * start_axis;
-    const double c = length2 * (capsule.a.squaredNorm() - capsule.radius_m * capsule.radius_m) -
-                     start_axis * start_axis;
-    const double square = b * b - a * c;
-    if (a > 1e-12 * length2) {
-      if (square < 0) return {};
-      const double range = (b - std::sqrt(square)) / a;
-      const double place = (range * ray_axis - start_axis) / length2;
-      if (range > 0 && place >= 0 && place <= 1) {
-        const Vector3 normal = range * ray - (capsule.a + place * axis);
-        return {range, -ray.dot(normal) / capsule.radius_m};
-      }
+Hit TracedCapsule::trace_near(const Vector3& unit_ray, double range, double ray_axis) const {
+  if (range > 0) {
+    const double place = (range * ray_axis - start_axis_) / length2_;
+    if (place >= 0 && place <= 1) {
+      const Vector3 normal = range * unit_ray - (capsule_.a + place * axis_);
+      return {range, -unit_ray.dot(normal) / capsule_.radius_m};
     }
   }
-  const Hit first = trace_ball(capsule.a, capsule.radius_m, ray);
-  const Hit second = trace_ball(capsule.b, capsule.radius_m, ray);
+  const Hit first = trace_ball(capsule_.a, capsule_.radius_m, unit_ray);
+  const Hit second = trace_ball(capsule_.b, capsule_.radius_m, unit_ray);
   if (!first) return second;
   if (!second) return first;
   return first.range_m < second.range_m ? first : second;

@@ -93,7 +93,7 @@ class Occluders {
     if (count_ == 0) return false;
     const Vector3 unit = ray.normalized();
     for (int i = 0; i < count_; ++i) {
-      const Hit hit = trace(*near_[static_cast<std::size_t>(i)], unit);
+      const Hit hit = TracedCapsule(*near_[static_cast<std::size_t>(i)]).trace(unit);
       if (hit && hit.range_m < range) return true;
     }
     return false;
@@ -214,10 +214,11 @@ void draw(const Capsule& capsule, const CameraModel& model, const LensRays& rays
             1.3 * reach / ((range - capsule.radius_m) * finest_pixel_rad(rays, pixel.value)) + 2);
   }
   box.clip(rays.width(), rays.height());
+  const TracedCapsule traced(capsule);
   for (int y = box.y0; y < box.y1; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
       if (!rays.has_ray(x, y)) continue;
-      const Hit hit = trace(capsule, rays.ray(x, y));
+      const Hit hit = traced.trace(rays.ray(x, y));
       const std::size_t i = planes.at(x, y);
       if (!hit || hit.range_m < 0.02) continue;
       if (planes.range_m[i] > 0 && hit.range_m >= double{planes.range_m[i]}) continue;

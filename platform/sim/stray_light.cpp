@@ -77,11 +77,22 @@ void add_halos(const Planes& before, float share, Planes& light) {
   }
 }
 
+// Eight partial sums: one addition need not wait for the one before it.
+double sum_of(const std::vector<float>& values) {
+  std::array<double, 8> lanes{};
+  const std::size_t whole = values.size() / lanes.size() * lanes.size();
+  for (std::size_t i = 0; i < whole; i += lanes.size()) {
+    for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k] += double{values[i + k]};
+  }
+  double sum = 0;
+  for (const double lane : lanes) sum += lane;
+  for (std::size_t i = whole; i < values.size(); ++i) sum += double{values[i]};
+  return sum;
+}
+
 // light.range_m holds signal times range, so that both are additive.
 void add_stray(const DeviceErrors& device, Planes& light) {
-  double signal = 0, weighted = 0;
-  for (const float value : light.signal) signal += double{value};
-  for (const float value : light.range_m) weighted += double{value};
+  const double signal = sum_of(light.signal), weighted = sum_of(light.range_m);
   if (!(signal > 0)) return;
   const double each = device.stray_share * signal / static_cast<double>(light.signal.size());
   const auto more = static_cast<float>(each);
@@ -117,8 +128,9 @@ void add_stray_light(const DeviceErrors& device, Planes& scratch, Planes& planes
     spread(share, scratch, planes.width, planes.height, planes.signal);
     spread(share, scratch, planes.width, planes.height, planes.range_m);
     add_stray(device, planes);
+    // Where no light is, the product with the range is zero too.
     for (std::size_t i = 0; i < count; ++i)
-      planes.range_m[i] = planes.signal[i] > 0 ? planes.range_m[i] / planes.signal[i] : 0;
+      planes.range_m[i] /= planes.signal[i] > 0 ? planes.signal[i] : 1.0f;
   }
   add_hot_pixels(device, planes);
 }

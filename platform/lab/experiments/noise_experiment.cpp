@@ -16,7 +16,7 @@ namespace glint {
 namespace {
 
 constexpr int k_noise_frames = 100'000;
-constexpr int k_noise_frames_quick = 500;
+constexpr int k_noise_frames_quick = 200;
 constexpr int k_restarted_frames = 10'000;
 constexpr double k_pixel_sigma_px = 0.1;
 constexpr std::array k_noises_m = {0.0, 0.001, 0.002, 0.003, 0.005};

@@ -30,10 +30,11 @@ bool read_until_end(glint::StatusReader& reader, double search_s) {
   const dds_time_t search_end = dds_time() + static_cast<dds_time_t>(search_s * 1e9);
   while (end_requested == 0) {
     // Queried before reading: all messages written before are then read below.
-    const bool left = reader.sink_has_left();
+    const glint::StatusReader::Sinks sinks = reader.sinks();
+    const bool left = sinks.found && !sinks.present;
     reader.read(left ? glint::Duration{} : k_wait);
     if (left) return true;
-    if (!reader.sink_was_found() && dds_time() > search_end) return false;
+    if (!sinks.found && dds_time() > search_end) return false;
   }
   reader.read(glint::Duration{});
   return true;

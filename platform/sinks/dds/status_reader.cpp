@@ -43,10 +43,11 @@ StatusReader::StatusReader(const DdsSettings& settings) : participant_(settings)
     // Created first: a sink that has discovered the status reader has then discovered this one too.
     tool.pose = participant_.reader(pose_stamped_type(), topics.pose, k_everything);
     tool.status = participant_.reader(status_type(), topics.status, k_everything);
-    for (const dds_entity_t reader : {tool.pose, tool.status}) {
-      dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS);
+    // A status that stays unread makes each wait return at once.
+    dds_set_status_mask(tool.pose, DDS_DATA_AVAILABLE_STATUS);
+    dds_set_status_mask(tool.status, DDS_DATA_AVAILABLE_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS);
+    for (const dds_entity_t reader : {tool.pose, tool.status})
       dds_waitset_attach(waitset_, reader, 0);
-    }
     tools_.push_back(tool);
   }
   result_.streams = static_cast<std::uint32_t>(tools_.size());
@@ -86,18 +87,15 @@ void StatusReader::count(ToolReader& tool, const StatusMessage& status, Time tak
   latency_.add(taken - mark.stamp);
 }
 
-bool StatusReader::sink_was_found() const {
+// Reads the status of each tool, also where the first decides.
+StatusReader::Sinks StatusReader::sinks() const {
+  Sinks sinks;
   for (const ToolReader& tool : tools_) {
-    if (matches_of(tool.status).total_count > 0) return true;
+    const dds_subscription_matched_status_t matches = matches_of(tool.status);
+    sinks.found = sinks.found || matches.total_count > 0;
+    sinks.present = sinks.present || matches.current_count > 0;
   }
-  return false;
-}
-
-bool StatusReader::sink_has_left() const {
-  for (const ToolReader& tool : tools_) {
-    if (matches_of(tool.status).current_count > 0) return false;
-  }
-  return sink_was_found();
+  return sinks;
 }
 
 ReaderResult StatusReader::result() const {

@@ -18,9 +18,11 @@ class StatusReader {
   // Waits at most `limit` for messages and counts all that are available.
   void read(Duration limit);
 
-  // Returns whether at least one sink was found and all found sinks have left.
-  [[nodiscard]] bool sink_has_left() const;
-  [[nodiscard]] bool sink_was_found() const;
+  // found: at least one sink was discovered. present: one of them has not left.
+  struct Sinks {
+    bool found = false, present = false;
+  };
+  [[nodiscard]] Sinks sinks() const;
 
   [[nodiscard]] ReaderResult result() const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "kernels/pose/lever_arm.hpp"
 #include "nodes/follow_motion.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/pose/lever_arm.hpp"
 #include "nodes/anchor_head.hpp"
 #include "nodes/check_frame.hpp"
 #include "nodes/follow_motion.hpp"

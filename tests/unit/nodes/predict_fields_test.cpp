@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "kernels/pose/lever_arm.hpp"
 #include "nodes/predict_tools.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "kernels/pose/lever_arm.hpp"
 #include "nodes/track_tools.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 

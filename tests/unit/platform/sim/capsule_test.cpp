@@ -32,7 +32,7 @@ TEST(Capsule, IsHitWhereMarchingAlongTheRayMeetsIt) {
     const Vector3 b = 0.15 * gaussian_vector(key, 3 * i + 1) + Vector3(0, 0, 0.9);
     const Vector3 aim = 0.15 * gaussian_vector(key, 3 * i + 2) + Vector3(0, 0, 0.9);
     const Capsule capsule{a, b, 0.08, 1};
-    const Hit hit = trace(capsule, aim.normalized());
+    const Hit hit = TracedCapsule(capsule).trace(aim.normalized());
     const double expected = marched(capsule, aim.normalized());
     if (std::abs(distance_to_axis(capsule, expected * aim.normalized()) - 0.08) > 2e-4) continue;
     EXPECT_NEAR(hit.range_m, expected, 2e-3) << i;
@@ -45,11 +45,11 @@ TEST(Capsule, IsHitWhereMarchingAlongTheRayMeetsIt) {
 
 TEST(Capsule, IsABallWhereItsEndsMeet) {
   const Capsule ball{{0, 0, 1}, {0, 0, 1}, 0.1, 1};
-  const Hit hit = trace(ball, Vector3::UnitZ());
+  const Hit hit = TracedCapsule(ball).trace(Vector3::UnitZ());
   EXPECT_NEAR(hit.range_m, 0.9, 1e-12);
   EXPECT_NEAR(hit.cosine, 1, 1e-12);
-  EXPECT_FALSE(trace(ball, Vector3(0.2, 0, 1).normalized()));
-  EXPECT_FALSE(trace(ball, -Vector3::UnitZ()));
+  EXPECT_FALSE(TracedCapsule(ball).trace(Vector3(0.2, 0, 1).normalized()));
+  EXPECT_FALSE(TracedCapsule(ball).trace(-Vector3::UnitZ()));
 }
 
 TEST(Capsule, KnowsHowNearALineOfSightPasses) {

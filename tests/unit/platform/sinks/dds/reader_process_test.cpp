@@ -1,5 +1,6 @@
 #include "platform/sinks/dds/reader_process.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -73,6 +74,30 @@ TEST_F(ReaderProcesses, CountEverySampleOfEveryToolReceivedOrMissed) {
   EXPECT_GE(result.received, 40u);
   EXPECT_EQ(result.received + result.missed, sink.counts().written);
   EXPECT_EQ(result.streams_ended, 2u);
+}
+
+// A process of its own that polls would take a core from the run it observes.
+TEST_F(ReaderProcesses, TakeNoProcessorTimeWhileNothingArrives) {
+  DdsSettings settings = test_settings();
+  settings.tool_names = {"pen", "pointer"};
+  const auto cpu_s = [] {
+    rusage used{};
+    getrusage(RUSAGE_CHILDREN, &used);
+    return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+           1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  };
+  const double before = cpu_s();
+  {
+    DdsSink sink(settings);
+    ReaderProcess reader(settings, file_);
+    ASSERT_TRUE(sink.wait_for_readers(1, k_limit));
+    sink.start();
+    offer_paced(sink, 0, 1);
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    sink.stop();
+    EXPECT_EQ(reader.finish(k_limit).received, 1u);
+  }
+  EXPECT_LT(cpu_s() - before, 1) << "of the 2 s without a message";
 }
 
 TEST_F(ReaderProcesses, CountNoLossWhereTheRingDropped) {
