@@ -36,6 +36,10 @@ Eigen::MatrixXd pseudo_inverse_of(const Eigen::MatrixXd& matrix) {
   return axes.vectors * inverted.asDiagonal() * axes.vectors.transpose();
 }
 
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  return matrix.colPivHouseholderQr().solve(right);
+}
+
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
   return matrix.ldlt().solve(right);
 }

@@ -25,6 +25,10 @@ struct SymmetricEigen {
 // Moore-Penrose pseudoinverse of a symmetric matrix.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse_of(const Eigen::MatrixXd& matrix);
 
+// Returns x of the least |matrix * x - right|. Requires full column rank.
+[[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix,
+                                            const Eigen::VectorXd& right);
+
 // Returns x of matrix * x = right. Requires a symmetric positive definite matrix.
 [[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix,
                                               const Eigen::MatrixXd& right);

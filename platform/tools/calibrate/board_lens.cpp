@@ -1,5 +1,6 @@
 #include "platform/tools/calibrate/board_lens.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,7 +72,7 @@ Vector3 difference(const CameraModel& lens, const CameraModel& other,
       }
     }
   }
-  return normal.ldlt().solve(sums);
+  return normal.inverse() * sums;
 }
 
 // Limits of the parts: the terciles of the detected corners along one axis.

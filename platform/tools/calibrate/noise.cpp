@@ -7,6 +7,7 @@
 #include "kernels/motion/motion_filter.hpp"
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/weighted_marker.hpp"
+#include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/figure_text.hpp"
 
@@ -78,7 +79,7 @@ Fit non_negative(const Eigen::Matrix<double, Eigen::Dynamic, k_terms>& rows,
       part.rightCols<1>() = rows.col(term);
       terms.push_back(term);
     }
-    const Eigen::VectorXd found = part.colPivHouseholderQr().solve(measured);
+    const Eigen::VectorXd found = least_squares(part, measured);
     if (!(found.minCoeff() >= 0)) continue;
     const double cost = (part * found - measured).squaredNorm();
     if (!(cost < best.cost)) continue;

@@ -35,7 +35,7 @@ void set_noise(std::vector<PivotSample>& samples, const PivotNoise& noise) {
 
 double chi_square(const PivotSample& sample, const PivotPoint& point) {
   const Vector3 miss = pivot_residual_of(sample, point);
-  return miss.dot(residual_covariance(sample, point).llt().solve(miss));
+  return miss.dot(residual_covariance(sample, point).inverse() * miss);
 }
 
 std::vector<bool> inliers_of(const std::vector<PivotSample>& samples, const PivotPoint& point,

@@ -1,7 +1,7 @@
 #include "platform/tools/report/statistics.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -121,7 +121,7 @@ GaussianFit fit_gaussian(const Histogram& histogram) {
       normal += weight * weight * powers * powers.transpose();
       right += weight * weight * std::log(count) * powers;
     }
-    parabola = normal.ldlt().solve(right);
+    parabola = normal.inverse() * right;
     if (!parabola.allFinite() || !(parabola[2] < 0)) return {};
   }
   const double mean = -parabola[1] / (2 * parabola[2]);

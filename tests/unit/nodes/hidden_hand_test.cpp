@@ -11,6 +11,7 @@
 #include "kernels/motion/predict_motion.hpp"
 #include "nodes/tracker.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -216,8 +217,9 @@ TEST(HiddenHand, OneMarkerHoldsItsPlaceCoveredByItsCovariance) {
 // chance, RefinePose must reject them by the motion prediction.
 TEST(HiddenHand, StraysNearbyAreHardlyEverTakenAndNeverMakeAGrossPose) {
   Figures held, coasted;
+  const auto hands = static_cast<std::uint64_t>(test::repetitions(4, 2));
   for (const int markers : {1, 2}) {
-    for (std::uint64_t seed = 10; seed < 14; ++seed) {
+    for (std::uint64_t seed = 10; seed < 10 + hands; ++seed) {
       held.add(Hand(seed).run(markers, 3));
       Hand alone(seed);
       alone.disable_partial_visibility();

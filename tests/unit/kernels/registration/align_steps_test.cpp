@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <span>
 #include <vector>
 
+#include "platform/dense.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
 namespace glint::align_steps_test {
@@ -99,7 +98,7 @@ TEST(AlignSteps, AreThoseOfGaussAndNewtonOverTheSeenPointsOfAllViews) {
               views[v].T_camera_world.inverse().rotation, views[v].T_camera_world * centroid, sums);
   }
   const Matrix6 matrix = sums.matrix.selfadjointView<Eigen::Lower>();
-  const Vector6 step = matrix.ldlt().solve(-sums.slope);
+  const Vector6 step = solve_symmetric(matrix, -sums.slope);
   const Vector3 shift = step.head<3>(), turn = step.tail<3>();
   const Quaternion by(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
   const Vector3 origin = by * (start_off().translation - centroid) + centroid + shift;

@@ -1,8 +1,8 @@
 #include "kernels/registration/alignment_sums.hpp"
+#include "platform/dense.hpp"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <random>
 #include <vector>
 
@@ -68,7 +68,7 @@ TEST(AlignmentSums, GiveTheMotionWithTheLeastSquares) {
       matrix += row.weight * derivative * derivative.transpose();
       slope += row.weight * row.residual * derivative;
     }
-    const Vector6 expected = matrix.ldlt().solve(-slope);
+    const Vector6 expected = solve_symmetric(matrix, -slope);
     const Result<AlignmentStep> step = solve(sums);
     ASSERT_EQ(step.reason, Reason::none);
     EXPECT_LT((step.value.translation - expected.head<3>()).norm(), 1e-9 * expected.norm());

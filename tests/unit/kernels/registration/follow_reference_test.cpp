@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "platform/dense.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/followed_world.hpp"
 
@@ -35,7 +36,8 @@ TEST(FollowReference, FollowsADriftWithinItsCovariance) {
     if (t < 3 * world.follower.settings.time_constant_s) continue;
     const FollowedReference now = world.follower.reference(at(t));
     const Vector6 error = error_of(now.T_world_base, truth);
-    squares += error.dot(now.covariance.inverse() * error) / 6;
+    const Matrix6 inverse = inverse_of(now.covariance);
+    squares += error.dot(inverse * error) / 6;
     worst_mm = std::max(worst_mm, 1e3 * error.head<3>().norm());
     ++judged;
   }

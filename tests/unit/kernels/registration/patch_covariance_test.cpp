@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 #include <random>
@@ -12,6 +11,7 @@
 
 #include "kernels/registration/align_model.hpp"
 #include "kernels/registration/match_points.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 #include "tests/unit/repetitions.hpp"
@@ -73,8 +73,10 @@ Consistency consistency(int block) {
     Vector6 off;
     off << end.T_world_base.translation - k_truth.translation,
         2 * turn.vec() * (turn.w() < 0 ? -1 : 1);
-    mean.independent += off.dot(end.covariance.inverse() * off) / 6 / scenes;
-    mean.patches += off.dot(clustered.value.inverse() * off) / 6 / scenes;
+    const Matrix6 of_independent = inverse_of(end.covariance);
+    const Matrix6 of_patches = inverse_of(clustered.value);
+    mean.independent += off.dot(of_independent * off) / 6 / scenes;
+    mean.patches += off.dot(of_patches * off) / 6 / scenes;
   }
   return mean;
 }
@@ -119,7 +121,7 @@ Matrix6 plain_patch_covariance(std::span<const SceneView> views, const Pose& T_w
     count += static_cast<double>(patches.size());
   }
   const Matrix6 whole = matrix.selfadjointView<Eigen::Lower>();
-  const Matrix6 inverse = whole.inverse();
+  const Matrix6 inverse = inverse_of(whole);
   return count / (count - 6) * inverse * spread * inverse;
 }
 

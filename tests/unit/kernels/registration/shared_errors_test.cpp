@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "kernels/registration/align_model.hpp"
 #include "kernels/registration/match_points.hpp"
+#include "platform/dense.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
@@ -62,7 +62,8 @@ double squared_distance(const Vector3& errors_m, double sigma_m) {
   // Allowance for rounding and second-order terms in directions that only the small ray errors
   // cover.
   const Matrix6 rounding = 1e-7 * Matrix6::Identity();
-  return off.dot((shared.value + rounding).inverse() * off);
+  const Matrix6 inverse = inverse_of(shared.value + rounding);
+  return off.dot(inverse * off);
 }
 
 TEST(SharedErrors, CoverADepthErrorOfOneSigma) {
@@ -158,7 +159,7 @@ TEST(SharedErrors, AreThoseOfTheSumsOfAllPairs) {
       sums[2] += derivative * along * down;
     }
   }
-  const Matrix6 inverse = Matrix6(matrix.selfadjointView<Eigen::Lower>()).inverse();
+  const Matrix6 inverse = inverse_of(matrix.selfadjointView<Eigen::Lower>());
   Matrix6 expected = Matrix6::Zero();
   for (const Vector6& sum : sums) {
     const Vector6 moves = errors.depth_sigma_m * inverse * sum;

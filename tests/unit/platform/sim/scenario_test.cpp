@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "platform/sim/simulator.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint::sim {
 namespace {
@@ -15,7 +16,7 @@ TEST(DefaultRun, ShowsAllThatATrackerMustStand) {
   const Simulator simulator(default_run());
   SimFrame frame;
   int frames = 0, tracked = 0, away = 0, hidden = 0, slow = 0;
-  for (int i = 0; i < simulator.frame_count(); i += 12) {
+  for (int i = 0; i < simulator.frame_count(); i += test::repetitions(12, 18)) {
     simulator.render(i, frame);
     const double t = Duration{frame.mid_exposure.nanoseconds}.seconds();
     ++frames;

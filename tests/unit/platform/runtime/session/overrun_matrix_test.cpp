@@ -13,6 +13,7 @@
 #include "tests/unit/platform/runtime/session/overrun_log.hpp"
 #include "tests/unit/platform/runtime/session/same_bytes.hpp"
 #include "tests/unit/platform/runtime/session/short_run.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -205,7 +206,7 @@ void OverrunMatrix::expect_frame_outputs(const OverrunLog& log) const {
 }
 
 void OverrunMatrix::expect_identical_replay(const SessionResult& run) {
-  for (const int workers : {1, 2}) {
+  for (int workers = test::repetitions(1, 2); workers <= 2; ++workers) {
     const ReplayResult result = expect_same_bytes(run.recording_file, run, workers);
     EXPECT_EQ(result.overruns, Tracker::node_count + Output::node_count);
   }
