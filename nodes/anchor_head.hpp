@@ -1,15 +1,15 @@
 // Corrects the drift of the head pose by a static reference body, where one is declared and
 // visible. All tools of the frame are then relative to that body. Without it, returns the headset's
 // own localisation covariance.
-// Cost:   one update of kernels/motion/head_anchor.hpp, more expensive with the body visible.
-// Worst:  the body is visible again after a gap.
+// Cost:   one update of kernels/motion/head_drift_correction.hpp, more expensive with the body
+// visible. Worst:  the body is visible again after a gap.
 #pragma once
 
 #include <array>
 #include <string_view>
 
 #include "graph/graph.hpp"
-#include "kernels/motion/head_anchor.hpp"
+#include "kernels/motion/head_drift_correction.hpp"
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/head_pose.hpp"
 #include "kernels/pose/tool.hpp"

@@ -1,7 +1,7 @@
 // Labels the one or two visible markers of a tool without a labeling, where they can belong to no
 // other tool (partial visibility). They keep the track alive while a hand occludes the others. Does
 // nothing in a frame in which every predicted tool has a labeling.
-// Cost and worst input: kernels/pose/few_markers.hpp.
+// Cost and worst input: kernels/pose/partial_visibility.hpp.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "graph/graph.hpp"
 #include "kernels/nonblocking.hpp"
-#include "kernels/pose/few_markers.hpp"
+#include "kernels/pose/partial_visibility.hpp"
 #include "nodes/node_limits.hpp"
 #include "nodes/tokens.hpp"
 

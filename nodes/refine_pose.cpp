@@ -4,11 +4,11 @@
 #include <cmath>
 #include <span>
 
-#include "kernels/pose/agreed_pose.hpp"
 #include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/chi_square_limit.hpp"
-#include "kernels/pose/choose_reading.hpp"
+#include "kernels/pose/choose_hypothesis.hpp"
 #include "kernels/pose/lever_arm.hpp"
+#include "kernels/pose/map_pose.hpp"
 #include "kernels/pose/marker_range.hpp"
 
 namespace glint {

@@ -27,7 +27,7 @@ inline constexpr int k_predicted_markers_min = 3;
 // covariance or a removed marker, contradicts the tracked motion. The mask holds the markers used.
 // For three isolated markers or fewer the filter receives a measurement linearised at its
 // prediction; for a flat tool nearly face-on, one linearised face-on. The alternative labeling is
-// fitted, too: choose_reading.hpp selects a pose hypothesis and returns its odds against the
+// fitted, too: choose_hypothesis.hpp selects a pose hypothesis and returns its odds against the
 // others.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",

@@ -6,13 +6,13 @@
 #include <cstdint>
 
 #include "kernels/limits.hpp"
-#include "kernels/motion/head_anchor.hpp"
+#include "kernels/motion/head_drift_correction.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/motion_track.hpp"
 #include "kernels/pose/expected_pose.hpp"
-#include "kernels/pose/few_markers.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/noise_estimate.hpp"
+#include "kernels/pose/partial_visibility.hpp"
 #include "kernels/pose/systematic_covariance.hpp"
 #include "kernels/pose/tool.hpp"
 #include "kernels/reason.hpp"

@@ -3,8 +3,8 @@
 # the core, with them, and with GoogleTest beside it. The machine code stays the same. What only few
 # files use stays out: g++ instantiates what a precompiled header does not need anew in every file
 # (nlohmann-json: half a second each).
-# A file that does not name what it uses is no longer told so by the compiler: tests/check_includes
-# looks, and the debug preset builds each file by itself and reads everything anew.
+# The compiler does not report a file that lacks an include: tests/check_includes does, and the debug
+# preset compiles each file by itself, without these headers.
 find_package(GTest QUIET)
 file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "")
 set(core_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <optional> <span>)

@@ -8,7 +8,7 @@
 // Source:   Pearson 1901, Philosophical Magazine 2(11), p. 559.
 #pragma once
 
-#include "kernels/lone_eigenvector.hpp"
+#include "kernels/isolated_eigenvector.hpp"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 //
 // What:     connected components inside the size gate, each with a sub-pixel centroid and variance;
 //           those beyond the gate are searched again at a higher level (rescan.hpp).
-//           If more than limits.blobs are found, nearest_kept.hpp selects those to keep: near
+//           If more than limits.blobs are found, nearest_candidates.hpp selects those to keep: near
 //           predicted markers, near a focus that changes with the frame, with a small misfit. A
 //           blob has the grown centroid if its grown box costs at most its share of
 //           limits.centroid_pixels_per_blob. A larger box uses what the others leave, in row order
@@ -24,7 +24,7 @@
 #include "kernels/image/blob_scratch.hpp"
 #include "kernels/image/blob_settings.hpp"
 #include "kernels/image/frame.hpp"
-#include "kernels/image/nearest_kept.hpp"
+#include "kernels/image/nearest_candidates.hpp"
 #include "kernels/image/rescan.hpp"
 #include "kernels/nonblocking.hpp"
 

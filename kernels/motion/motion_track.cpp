@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "kernels/motion/cholesky.hpp"
-#include "kernels/motion/stroke_noise.hpp"
+#include "kernels/motion/occlusion_noise.hpp"
 
 namespace glint {
 namespace {

@@ -7,14 +7,14 @@
 // Cost:     propagate + correct + static window: 11 us a measured pose.
 // Worst:    a full static window; otherwise data independent.
 // Accuracy: by simulation: `glint experiment rest | lag | sine | prediction | occlusion`.
-// Source:   motion_filter.hpp, rest_window.hpp; adaptation: Mehra 1972, Approaches to adaptive
+// Source:   motion_filter.hpp, static_detector.hpp; adaptation: Mehra 1972, Approaches to adaptive
 //           filtering (covariance matching), here as one factor with a small step a frame.
 #pragma once
 
 #include <span>
 
 #include "kernels/motion/motion_filter.hpp"
-#include "kernels/motion/rest_window.hpp"
+#include "kernels/motion/static_detector.hpp"
 #include "kernels/nonblocking.hpp"
 
 namespace glint {

@@ -1,8 +1,8 @@
 #include "kernels/motion/predict_motion.hpp"
 
 #include "kernels/motion/interpolate.hpp"
+#include "kernels/motion/occlusion_noise.hpp"
 #include "kernels/motion/singer.hpp"
-#include "kernels/motion/stroke_noise.hpp"
 
 namespace glint {
 namespace {

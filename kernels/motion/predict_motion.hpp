@@ -1,7 +1,7 @@
 // Closed-form prediction of a tool's pose and its covariance from a motion state.
 //
 // What:     the pose after a time under damped accelerations; its covariance from the state's
-//           errors, the process noise and that of stroke_noise.hpp. The reference implementation
+//           errors, the process noise and that of occlusion_noise.hpp. The reference implementation
 //           of integrate_motion.hpp, and the source of its poses' covariance.
 // Cost:     two Singer steps, two rotations, 6 of the covariance's 18 rows.
 // Worst:    data independent; until the state's time it returns the state's own pose.

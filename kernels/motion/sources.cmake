@@ -1,8 +1,8 @@
-target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/head_anchor.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/head_walk.cpp ${CMAKE_CURRENT_LIST_DIR}/world_errors.cpp
+target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/head_drift_correction.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/head_drift.cpp ${CMAKE_CURRENT_LIST_DIR}/world_errors.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interpolate.cpp
   ${CMAKE_CURRENT_LIST_DIR}/motion_filter.cpp ${CMAKE_CURRENT_LIST_DIR}/predict_motion.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/rest_window.cpp ${CMAKE_CURRENT_LIST_DIR}/singer.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/static_detector.cpp ${CMAKE_CURRENT_LIST_DIR}/singer.cpp
   ${CMAKE_CURRENT_LIST_DIR}/correlated_errors.cpp
   ${CMAKE_CURRENT_LIST_DIR}/motion_track.cpp)
 

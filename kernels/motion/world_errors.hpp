@@ -1,11 +1,11 @@
 // Kalman filter for errors of range, lens, clocks and headset, observed on a static reference body.
 //
 // What:     the headset and the fits measure the body's pose as z = e + b + A c + v t. e is the
-//           headset's error (head_walk.hpp), b the body's true pose, c the errors of range and lens
-//           (calibration_errors.hpp). t is the time by which head poses are ahead of the frames, v
-//           the body's apparent velocity. One Kalman filter over (e, b, c, t) runs for each of
-//           several factors on the headset's declared error; the likelihoods of the innovations
-//           decide between the factors.
+//           headset's error (head_drift.hpp), b the body's true pose, c the errors of range and
+//           lens (calibration_errors.hpp). t is the time by which head poses are ahead of the
+//           frames, v the body's apparent velocity. One Kalman filter over (e, b, c, t) runs for
+//           each of several factors on the headset's declared error; the likelihoods of the
+//           innovations decide between the factors.
 // Cost:     a call of work(): one update of 18 states by 6 values.
 // Worst:    data independent.
 // Accuracy: first order in the errors. A measurement that fails the chi-square test is rejected;
@@ -17,7 +17,7 @@
 
 #include <array>
 
-#include "kernels/motion/head_walk.hpp"
+#include "kernels/motion/head_drift.hpp"
 #include "kernels/pose/calibration_errors.hpp"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #include <array>
 #include <bitset>
 
-#include "kernels/pose/choose_reading.hpp"
+#include "kernels/pose/choose_hypothesis.hpp"
 
 namespace glint {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels/lone_eigenvector.hpp"
+#include "kernels/isolated_eigenvector.hpp"
 
 namespace glint {
 namespace {

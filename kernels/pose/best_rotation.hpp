@@ -8,7 +8,7 @@
 //           cross products keep det R = +1, so that no third singular value is needed and coplanar
 //           points are no special case.
 // Cost:     the same for every matrix: the only iteration is k_eigenvalue_steps on one number
-//           (lone_eigenvector.hpp).
+//           (isolated_eigenvector.hpp).
 // Worst:    data independent. Where two singular values make the rotation ambiguous (w_1 = -w_2),
 //           returns any of the best rotations.
 // Accuracy: trace(R^T C) within 1e-14 |C| of the maximum over 10^5 random, coplanar, mirrored and
@@ -18,7 +18,7 @@
 // Source:   Kanatani 1994 (C = U W V^T, R = U diag(1, 1, det U V^T) V^T); the separated eigenvalue,
 //           and its vector by a cross product: Smith 1961, Communications of the ACM 4, p. 168, and
 //           Eberly 2014, "A Robust Eigensolver for 3x3 Symmetric Matrices"
-//           (lone_eigenvector.hpp).
+//           (isolated_eigenvector.hpp).
 #pragma once
 
 #include "kernels/geometry.hpp"

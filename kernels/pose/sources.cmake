@@ -14,14 +14,14 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp $
   ${CMAKE_CURRENT_LIST_DIR}/calibration_errors.cpp
   ${CMAKE_CURRENT_LIST_DIR}/weighted_marker.cpp ${CMAKE_CURRENT_LIST_DIR}/marker_sight.cpp
   ${CMAKE_CURRENT_LIST_DIR}/normal_equations.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/expected_pose.cpp ${CMAKE_CURRENT_LIST_DIR}/choose_reading.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/expected_pose.cpp ${CMAKE_CURRENT_LIST_DIR}/choose_hypothesis.cpp
   ${CMAKE_CURRENT_LIST_DIR}/pose_prior.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/weighted_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/agreed_pose.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/weighted_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/map_pose.cpp
   ${CMAKE_CURRENT_LIST_DIR}/depth_flip.cpp ${CMAKE_CURRENT_LIST_DIR}/refine_pose.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp ${CMAKE_CURRENT_LIST_DIR}/few_markers.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp ${CMAKE_CURRENT_LIST_DIR}/partial_visibility.cpp
   ${CMAKE_CURRENT_LIST_DIR}/noise_estimate.cpp
   ${CMAKE_CURRENT_LIST_DIR}/systematic_covariance.cpp)
-# Nobody reads errno or asks for floating-point traps here; where either might be seen, the pass over
-# all pairs handles one at a time. Neither changes a result.
+# These loops read no errno and use no floating-point traps: with either, the compiler would not
+# vectorise the pass over all pairs. Neither option changes a result.
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES
   COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math" SKIP_PRECOMPILE_HEADERS ON)

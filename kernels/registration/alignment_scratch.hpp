@@ -8,8 +8,8 @@
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/pose_factor.hpp"
 #include "kernels/registration/point_grid.hpp"
-#include "kernels/registration/seen_points.hpp"
 #include "kernels/registration/splat_cloud.hpp"
+#include "kernels/registration/visible_points.hpp"
 
 namespace glint {
 

@@ -25,7 +25,7 @@
 #include "kernels/registration/alignment_sums.hpp"
 #include "kernels/registration/point_grid.hpp"
 #include "kernels/registration/scene_view.hpp"
-#include "kernels/registration/seen_points.hpp"
+#include "kernels/registration/visible_points.hpp"
 
 namespace glint {
 

@@ -4,5 +4,5 @@ target_sources(glint_registration PRIVATE ${CMAKE_CURRENT_LIST_DIR}/align_model.
   ${CMAKE_CURRENT_LIST_DIR}/judge_links.cpp ${CMAKE_CURRENT_LIST_DIR}/match_points.cpp
   ${CMAKE_CURRENT_LIST_DIR}/model_cloud.cpp ${CMAKE_CURRENT_LIST_DIR}/outline.cpp
   ${CMAKE_CURRENT_LIST_DIR}/patch_covariance.cpp ${CMAKE_CURRENT_LIST_DIR}/point_grid.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/render_depth.cpp ${CMAKE_CURRENT_LIST_DIR}/seen_points.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/render_depth.cpp ${CMAKE_CURRENT_LIST_DIR}/visible_points.cpp
   ${CMAKE_CURRENT_LIST_DIR}/shared_errors.cpp ${CMAKE_CURRENT_LIST_DIR}/splat_cloud.cpp)

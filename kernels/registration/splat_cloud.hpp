@@ -17,7 +17,7 @@
 
 #include <span>
 
-#include "kernels/registration/seen_points.hpp"
+#include "kernels/registration/visible_points.hpp"
 #include "kernels/slice_size.hpp"
 
 namespace glint {

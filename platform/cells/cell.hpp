@@ -12,7 +12,7 @@
 #include "graph/overrun.hpp"
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
-#include "kernels/motion/head_anchor.hpp"
+#include "kernels/motion/head_drift_correction.hpp"
 #include "kernels/motion/motion_filter.hpp"
 #include "kernels/pose/bias_correction.hpp"
 #include "kernels/pose/tool.hpp"

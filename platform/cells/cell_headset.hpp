@@ -9,7 +9,8 @@ namespace glint {
 // reference = "NAME": requires one of the tools read before.
 void read_reference(TomlReader& root, Cell& cell);
 
-// [headset]: noise of its own localisation. null: defaults of kernels/motion/head_anchor.hpp.
+// [headset]: noise of its own localisation. null: defaults of
+// kernels/motion/head_drift_correction.hpp.
 void read_headset(const toml::table* table, Cell& cell);
 
 }  // namespace glint

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "kernels/limits.hpp"
-#include "platform/formats/picture_file.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/read_file.hpp"
 

@@ -1,4 +1,4 @@
-#include "platform/formats/picture_file.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/read_file.hpp"
 

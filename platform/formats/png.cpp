@@ -6,7 +6,7 @@
 #include <memory>
 #include <string_view>
 
-#include "platform/formats/picture_file.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/part_file.hpp"
 #include "platform/read_file.hpp"

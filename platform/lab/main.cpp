@@ -5,7 +5,7 @@
 #include "platform/apps/glint/run_commands.hpp"
 #include "platform/apps/glint/version.hpp"
 #include "platform/exit_code.hpp"
-#include "platform/lab/baseline/seed_method.hpp"
+#include "platform/lab/baseline/baseline_method.hpp"
 #include "platform/lab/command_experiment.hpp"
 
 int main(int argc, char** argv) {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "platform/formats/image_file.hpp"
 #include "platform/formats/npy.hpp"
-#include "platform/formats/picture_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/read_file.hpp"

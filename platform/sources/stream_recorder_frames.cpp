@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "platform/formats/picture_file.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/read_file.hpp"

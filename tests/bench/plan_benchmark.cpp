@@ -18,7 +18,7 @@
 #include "platform/budget/task_model_of.hpp"
 #include "platform/runtime/rt/cycle_clock.hpp"
 #include "platform/runtime/rt/planned_executor.hpp"
-#include "platform/runtime/session/run_plan.hpp"
+#include "platform/runtime/session/run_schedule.hpp"
 #include "platform/tools/report/statistics.hpp"
 #include "rounds.hpp"
 #include "schedules/exact_schedule.hpp"

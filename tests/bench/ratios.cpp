@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench_frames.hpp"
-#include "platform/lab/baseline/seed_tracker.hpp"
+#include "platform/lab/baseline/baseline_tracker.hpp"
 #include "platform/lab/experiments/glint_chain.hpp"
 
 namespace glint::bench {
@@ -51,12 +51,12 @@ cv::Mat plane_of(const Frame& frame) {
 }
 
 std::vector<Row> rows_of(const Sensor& sensor) {
-  SeedSettings everywhere;
+  BaselineSettings everywhere;
   everywhere.use_roi = false;
-  SeedSettings roi_alone, points_alone;
+  BaselineSettings roi_alone, points_alone;
   roi_alone.undistortion = BaselineUndistortion::roi;
   points_alone.undistortion = BaselineUndistortion::points;
-  const auto seed = [&](const SeedSettings& settings) {
+  const auto baseline = [&](const BaselineSettings& settings) {
     return std::make_shared<BaselineTracker>(sensor.camera, sensor.tool, settings);
   };
   const auto glint = [&](SearchArea area) {
@@ -73,16 +73,18 @@ std::vector<Row> rows_of(const Sensor& sensor) {
                   [plane, threshold, out = cv::Mat()]() mutable {
                     cv::threshold(plane, out, threshold, 255, cv::THRESH_BINARY);
                   }});
-  rows.push_back(make_row("seed front end", sensor, seed({}),
+  rows.push_back(make_row("baseline front end", sensor, baseline({}),
                           [](BaselineTracker& tracker, const Player& player) {
                             (void)tracker.front_end(player.frame());
                           }));
-  rows.push_back(make_row("seed, whole frame", sensor, seed(everywhere), track));
-  rows.push_back(make_row("seed, ROI", sensor, seed({}), track));
+  rows.push_back(make_row("baseline, whole frame", sensor, baseline(everywhere), track));
+  rows.push_back(make_row("baseline, ROI", sensor, baseline({}), track));
   rows.push_back(make_row("Glint, whole frame", sensor, glint(SearchArea::whole_frame), track));
   rows.push_back(make_row("Glint, ROI", sensor, glint(SearchArea::predicted), track));
-  rows.push_back(make_row("seed, ROI, which alone is remapped", sensor, seed(roi_alone), track));
-  rows.push_back(make_row("seed, raw ROI, points undistorted", sensor, seed(points_alone), track));
+  rows.push_back(
+      make_row("baseline, ROI, which alone is remapped", sensor, baseline(roi_alone), track));
+  rows.push_back(
+      make_row("baseline, raw ROI, points undistorted", sensor, baseline(points_alone), track));
   return rows;
 }
 
@@ -124,13 +126,13 @@ bool print_ratios() {
       std::printf("  %-52s %9.2f us a frame\n", row.name.c_str(), row.median_us);
     const auto us = [&](int row) { return rows[static_cast<std::size_t>(row)].median_us; };
     if (sensor->camera.reflectivity_bits == 8)
-      met &= print_bar("seed front end / plain cv::threshold", us(1) / us(0), k_front_end_ratio_max,
-                       true);
-    met &= print_bar("seed / Glint, both with ROI", us(3) / us(5), k_roi_speedup_min, false);
-    met &= print_bar("seed / Glint, both on the whole frame", us(2) / us(4),
+      met &= print_bar("baseline front end / plain cv::threshold", us(1) / us(0),
+                       k_front_end_ratio_max, true);
+    met &= print_bar("baseline / Glint, both with ROI", us(3) / us(5), k_roi_speedup_min, false);
+    met &= print_bar("baseline / Glint, both on the whole frame", us(2) / us(4),
                      k_full_frame_speedup_min, false);
-    print_ratio("seed that remaps the ROI alone / Glint with ROI", us(6) / us(5));
-    print_ratio("seed on the raw ROI, less work / Glint with ROI", us(7) / us(5));
+    print_ratio("baseline that remaps the ROI alone / Glint with ROI", us(6) / us(5));
+    print_ratio("baseline on the raw ROI, less work / Glint with ROI", us(7) / us(5));
   }
   return met;
 }

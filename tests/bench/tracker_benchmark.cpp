@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench_frames.hpp"
-#include "platform/lab/baseline/seed_tracker.hpp"
+#include "platform/lab/baseline/baseline_tracker.hpp"
 #include "platform/lab/experiments/glint_chain.hpp"
 #include "ratios.hpp"
 
@@ -32,7 +32,7 @@ void seed_front_end(benchmark::State& state) {
 }
 
 void seed_chain(benchmark::State& state, bool roi) {
-  SeedSettings settings;
+  BaselineSettings settings;
   settings.use_roi = roi;
   BaselineTracker tracker(sensor_of(state).camera, sensor_of(state).tool, settings);
   Player player(sensor_of(state));

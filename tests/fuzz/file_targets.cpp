@@ -5,11 +5,11 @@
 
 #include "platform/cells/tool_formats.hpp"
 #include "platform/formats/c3d_reader.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/formats/npy.hpp"
-#include "platform/formats/picture_file.hpp"
 #include "platform/tools/mapping/cloud_files.hpp"
 #include "platform/tools/mapping/point_fields.hpp"
-#include "platform/tools/reference/depth_picture.hpp"
+#include "platform/tools/reference/depth_image.hpp"
 #include "platform/tools/robot/mesh_bytes.hpp"
 #include "platform/tools/robot/mesh_file.hpp"
 #include "platform/tools/robot/robot_cloud.hpp"
@@ -28,7 +28,7 @@ void read_pgm_file(Bytes bytes) {
   const Image picture = read_pgm(file_of(bytes));
   expect(picture.values.size() ==
              static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height),
-         "as many pixels as its size says");
+         "as many pixels as its size states");
 }
 
 // Decoded by libspng, after a check of the size.

@@ -7,7 +7,7 @@ set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 
-# CMake's trials of the compiler run in folders of their own: hand them what they need to know.
+# CMake tries the compiler in folders of their own, which need this variable too.
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES GLINT_SYSROOT)
 set(GLINT_SYSROOT "${CMAKE_BINARY_DIR}/sysroot" CACHE PATH "arm64 packages to build against")
 if(NOT EXISTS ${GLINT_SYSROOT}/made-of)

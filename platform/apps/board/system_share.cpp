@@ -6,7 +6,7 @@
 #include "platform/runtime/rt/memory_lock.hpp"
 #include "platform/runtime/rt/real_time_thread.hpp"
 #include "platform/runtime/rt/release.hpp"
-#include "platform/runtime/session/run_plan.hpp"
+#include "platform/runtime/session/run_schedule.hpp"
 
 namespace glint {
 namespace {

@@ -26,7 +26,7 @@
 #include "platform/sources/open_source.hpp"
 #include "platform/tools/inspect/diagnosis.hpp"
 #include "platform/tools/inspect/recorded_frames.hpp"
-#include "platform/tools/report/picture.hpp"
+#include "platform/tools/report/detection_image.hpp"
 
 namespace glint {
 namespace {

@@ -15,7 +15,7 @@
 #include "platform/tools/mapping/cloud_files.hpp"
 #include "platform/tools/mapping/depth_png.hpp"
 #include "platform/tools/mapping/map_chain.hpp"
-#include "platform/tools/mapping/map_picture.hpp"
+#include "platform/tools/mapping/map_image.hpp"
 #include "platform/tools/mapping/occupancy.hpp"
 
 namespace glint {

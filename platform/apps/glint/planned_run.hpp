@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "platform/runtime/session/run_plan.hpp"
+#include "platform/runtime/session/run_schedule.hpp"
 
 namespace glint {
 

@@ -1,7 +1,7 @@
 // Measurement inputs of AssignMarkers (labelings) and RefinePose (labelled markers).
 #include <algorithm>
 
-#include "kernels/pose/agreed_pose.hpp"
+#include "kernels/pose/map_pose.hpp"
 #include "nodes/pose_nodes.hpp"
 #include "nodes/refine_pose.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"

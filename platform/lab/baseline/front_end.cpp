@@ -36,7 +36,7 @@ cv::Mat view_of(const void* pixels, const cv::Size& size, int type) {
 
 }  // namespace
 
-BaselineFrontEnd::BaselineFrontEnd(const Camera& camera, const SeedSettings& settings)
+BaselineFrontEnd::BaselineFrontEnd(const Camera& camera, const BaselineSettings& settings)
     : model_(camera.model),
       threshold_16_(camera.threshold),
       size_(camera.model.width, camera.model.height),

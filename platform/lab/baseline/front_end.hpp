@@ -13,7 +13,7 @@
 
 #include "kernels/image/frame.hpp"
 #include "platform/formats/camera.hpp"
-#include "platform/lab/baseline/seed_settings.hpp"
+#include "platform/lab/baseline/baseline_settings.hpp"
 
 namespace glint {
 
@@ -24,7 +24,7 @@ struct BaselineBlob {
 
 class BaselineFrontEnd {
  public:
-  BaselineFrontEnd(const Camera& camera, const SeedSettings& settings);
+  BaselineFrontEnd(const Camera& camera, const BaselineSettings& settings);
 
   // The four stages in order; each reads the result of the previous one. `roi` in undistorted
   // pixels.

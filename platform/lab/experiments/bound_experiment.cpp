@@ -7,7 +7,7 @@
 #include "kernels/angles.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/pose/rigid_fit.hpp"
-#include "platform/lab/baseline/seed_match.hpp"
+#include "platform/lab/baseline/baseline_match.hpp"
 #include "platform/lab/experiments/cramer_rao.hpp"
 #include "platform/lab/experiments/estimator_settings.hpp"
 #include "platform/lab/experiments/point_view.hpp"

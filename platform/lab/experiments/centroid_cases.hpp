@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/image/pixel_noise.hpp"
-#include "platform/lab/experiments/sphere_pictures.hpp"
+#include "platform/lab/experiments/sphere_images.hpp"
 
 namespace glint {
 

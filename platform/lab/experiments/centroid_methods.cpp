@@ -39,7 +39,7 @@ CentroidMethods::CentroidMethods(const Camera& camera, const PixelNoise& noise,
       settings_{2, k_area_max_px, camera.threshold, saturated_from(camera), noise},
       nominal_(nominal),
       shift_(sphere_offset(camera.model)),
-      seed_(std::make_unique<BaselineFrontEnd>(camera, SeedSettings{})) {}
+      baseline_(std::make_unique<BaselineFrontEnd>(camera, BaselineSettings{})) {}
 
 CentroidMethods::~CentroidMethods() = default;
 
@@ -67,13 +67,13 @@ std::optional<CentroidMethods::Located> CentroidMethods::locate(const Frame& fra
 
 std::optional<Vector2> CentroidMethods::locate_by_baseline(const Frame& frame,
                                                            const Vector2& truth_px) {
-  seed_->undistort(frame);
-  seed_->threshold(seed_->whole());
-  seed_->halve();
-  seed_->detect();
-  const auto blobs = seed_->blobs();
+  baseline_->undistort(frame);
+  baseline_->threshold(baseline_->whole());
+  baseline_->halve();
+  baseline_->detect();
+  const auto blobs = baseline_->blobs();
   const auto place = [&](int i) {
-    return seed_->raw_pixel(blobs[static_cast<std::size_t>(i)].centre_px);
+    return baseline_->raw_pixel(blobs[static_cast<std::size_t>(i)].centre_px);
   };
   const int found = nearest(static_cast<int>(blobs.size()), truth_px, place);
   if (found < 0) return std::nullopt;

@@ -38,7 +38,7 @@ class CentroidMethods {
   BlobSettings settings_;
   NominalMarker nominal_;
   SphereOffset shift_;
-  std::unique_ptr<BaselineFrontEnd> seed_;
+  std::unique_ptr<BaselineFrontEnd> baseline_;
   std::unique_ptr<Runs> runs_ = std::make_unique<Runs>();
   std::unique_ptr<BlobScratch> scratch_ = std::make_unique<BlobScratch>();
   std::unique_ptr<Blobs> blobs_ = std::make_unique<Blobs>();

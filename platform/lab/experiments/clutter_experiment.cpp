@@ -12,7 +12,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/cells/tool_notices.hpp"
 #include "platform/input_error.hpp"
-#include "platform/lab/baseline/seed_tracker.hpp"
+#include "platform/lab/baseline/baseline_tracker.hpp"
 #include "platform/lab/experiments/clutter_scene.hpp"
 #include "platform/lab/experiments/clutter_tally.hpp"
 #include "platform/lab/experiments/point_view.hpp"
@@ -166,8 +166,8 @@ std::vector<ClutterCase> cases_of(const CaseOptions& options) {
   };
   passing("just accepted, side by side", close, Passing::beside);
   passing("just accepted, one hides the other", close, Passing::occluding);
-  passing("told apart, side by side", distinct, Passing::beside);
-  passing("told apart, one hides the other", distinct, Passing::occluding);
+  passing("distinguished, side by side", distinct, Passing::beside);
+  passing("distinguished, one hides the other", distinct, Passing::occluding);
   return cases;
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "platform/lab/baseline/seed_settings.hpp"
+#include "platform/lab/baseline/baseline_settings.hpp"
 
 namespace glint {
 namespace {
@@ -54,11 +54,11 @@ Json localisation_json(const sim::LocalisationSettings& settings) {
           {"pivot_m", settings.pivot_m}};
 }
 
-Json baseline_json(const SeedSettings& seed) {
-  return {{"delta_m", seed.delta_m},
-          {"max_rms_m", seed.max_rms_m},
-          {"min_markers", seed.min_markers},
-          {"roi_margin_px", seed.roi_margin_px}};
+Json baseline_json(const BaselineSettings& settings) {
+  return {{"delta_m", settings.delta_m},
+          {"max_rms_m", settings.max_rms_m},
+          {"min_markers", settings.min_markers},
+          {"roi_margin_px", settings.roi_margin_px}};
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ std::string declared_parameters(const std::vector<ExperimentRun>& runs) {
     json["reference"] = {{"position_sigma_m", scenario.reference.position_sigma_m},
                          {"angle_sigma_rad", scenario.reference.angle_sigma_rad}};
   }
-  json["seed_method"] = baseline_json(SeedSettings{});
+  json["seed_method"] = baseline_json(BaselineSettings{});
   json["runs"] = Json::array();
   for (const ExperimentRun& run : runs) {
     json["runs"].push_back({{"seed", run.scenario.seed},

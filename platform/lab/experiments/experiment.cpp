@@ -4,7 +4,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "platform/cells/tool_file.hpp"
-#include "platform/lab/baseline/seed_tracker.hpp"
+#include "platform/lab/baseline/baseline_tracker.hpp"
 #include "platform/lab/experiments/declared.hpp"
 #include "platform/lab/experiments/glint_chain.hpp"
 #include "platform/lab/experiments/method_record.hpp"

@@ -1,6 +1,6 @@
 #include "platform/lab/experiments/recordings.hpp"
 
-#include "platform/formats/picture_file.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

@@ -5,7 +5,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/runtime/rt/clock.hpp"
-#include "platform/runtime/session/choices.hpp"
+#include "platform/runtime/session/release_records.hpp"
 
 namespace glint {
 

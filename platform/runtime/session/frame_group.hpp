@@ -8,9 +8,9 @@
 #include "graph/rate_group.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
-#include "platform/runtime/session/choices.hpp"
 #include "platform/runtime/session/frame_source.hpp"
 #include "platform/runtime/session/group_runner.hpp"
+#include "platform/runtime/session/release_records.hpp"
 #include "platform/sinks/dds/pose_output.hpp"
 #include "platform/sinks/record/recorder.hpp"
 

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "nodes/tokens.hpp"
-#include "platform/runtime/session/choices.hpp"
 #include "platform/runtime/session/release_order.hpp"
+#include "platform/runtime/session/release_records.hpp"
 #include "platform/sinks/record/recording_format.hpp"
 #include "platform/sinks/record/recording_reader.hpp"
 

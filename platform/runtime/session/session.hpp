@@ -18,7 +18,7 @@
 #include "platform/runtime/session/frame_source.hpp"
 #include "platform/runtime/session/group_runner.hpp"
 #include "platform/runtime/session/latency.hpp"
-#include "platform/runtime/session/run_plan.hpp"
+#include "platform/runtime/session/run_schedule.hpp"
 #include "platform/runtime/session/sent_ticks.hpp"
 #include "platform/runtime/session/sink_outcome.hpp"
 #include "platform/tools/report/calibration_findings.hpp"

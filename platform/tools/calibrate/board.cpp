@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "platform/formats/picture_file.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/tools/calibrate/board_lens.hpp"
 #include "platform/tools/calibrate/figure_text.hpp"

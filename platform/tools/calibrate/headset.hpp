@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/motion/head_walk.hpp"
+#include "kernels/motion/head_drift.hpp"
 #include "platform/tools/inspect/recorded_frames.hpp"
 
 namespace glint {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "platform/formats/picture_file.hpp"
+#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

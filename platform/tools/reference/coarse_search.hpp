@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "kernels/registration/alignment_sums.hpp"
-#include "platform/tools/reference/coarse_picture.hpp"
+#include "platform/tools/reference/coarse_image.hpp"
 #include "platform/tools/reference/scene.hpp"
 
 namespace glint {

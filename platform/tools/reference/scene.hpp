@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernels/registration/scene_view.hpp"
-#include "platform/tools/reference/depth_picture.hpp"
+#include "platform/tools/reference/depth_image.hpp"
 #include "platform/tools/robot/robot_cloud.hpp"
 #include "platform/tools/robot/robot_model.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/motion/head_walk.hpp"
+#include "kernels/motion/head_drift.hpp"
 #include "kernels/pose/calibration_errors.hpp"
 #include "platform/tools/inspect/recorded_frames.hpp"
 

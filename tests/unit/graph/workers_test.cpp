@@ -108,7 +108,7 @@ TEST(Workers, SleepAfterTheirSpinsAndCountOneOverrunAWait) {
   workers.run(*graph, 0);
   other.join();
   EXPECT_LE(rest.spun.load(), 9u) << "three waits of three spins";
-  EXPECT_EQ(rest.reported.load(), 3u) << "whoever arrives last wakes the other";
+  EXPECT_EQ(rest.reported.load(), 3u) << "the last to arrive wakes the other";
   EXPECT_GE(workers.overruns(), 1u);
   EXPECT_LE(workers.overruns(), 3u) << "two workers meet three times, and one of them waits";
 }

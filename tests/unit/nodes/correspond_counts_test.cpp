@@ -249,7 +249,7 @@ TEST_F(Assigned, RivalsTakeNoMarkerOfAnotherTool) {
   of(0).count = 0;
   of(0).reason = Reason::no_labeling;
   run();
-  EXPECT_EQ(assignment_->alternative[1].count, 3) << "and in the next frame nobody holds it";
+  EXPECT_EQ(assignment_->alternative[1].count, 3) << "and in the next frame no tool holds it";
 }
 
 TEST_F(Assigned, NothingOfARefusedFrameIs) {

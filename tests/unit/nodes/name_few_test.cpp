@@ -45,7 +45,7 @@ class NameFewTest : public testing::Test {
   int assigned_count() {
     tools_.set(*set_, ++version_, 0);
     node_->operator()(verdict_, *markers_, tools_, *predictions_, *assignment_, seen_);
-    EXPECT_EQ(seen_.tools[1].count, 0) << "it has a labeling, or is not foretold";
+    EXPECT_EQ(seen_.tools[1].count, 0) << "it has a labeling, or is not predicted";
     return seen_.tools[0].count;
   }
 

@@ -1,6 +1,6 @@
 #include "kernels/cloud/local_surface.hpp"
 
-#include "plain_surface.hpp"
+#include "reference_surface.hpp"
 
 namespace glint {
 namespace {

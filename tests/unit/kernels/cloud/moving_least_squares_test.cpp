@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "plain_surface.hpp"
+#include "reference_surface.hpp"
 #include "walk_steps.hpp"
 
 namespace glint {

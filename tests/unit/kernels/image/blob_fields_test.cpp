@@ -13,7 +13,7 @@
 #include "kernels/image/marker_misfit.hpp"
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/blob_finder.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::blob_fields_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "kernels/image/grown_box.hpp"
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/blob_finder.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::blob_work_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "kernels/image/roi_threshold.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::blobs_test {
 namespace {

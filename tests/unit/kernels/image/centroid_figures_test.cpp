@@ -9,7 +9,7 @@
 #include "kernels/image/centroid.hpp"
 #include "kernels/image/components.hpp"
 #include "kernels/image/roi_threshold.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::centroid_figures_test {
 namespace {

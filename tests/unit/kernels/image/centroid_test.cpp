@@ -6,7 +6,7 @@
 
 #include "kernels/image/components.hpp"
 #include "kernels/image/roi_threshold.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::centroid_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/roi_threshold.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::centroid_variance_test {
 namespace {

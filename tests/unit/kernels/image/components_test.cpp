@@ -8,7 +8,7 @@
 
 #include "kernels/image/grown_box.hpp"
 #include "kernels/image/roi_threshold.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::components_test {
 namespace {

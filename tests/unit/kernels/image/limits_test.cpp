@@ -7,7 +7,7 @@
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/roi_threshold.hpp"
 #include "kernels/merge_sort.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::limits_test {
 namespace {

@@ -15,7 +15,7 @@
 #include "kernels/image/components.hpp"
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/blob_finder.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 #include "tests/unit/repetitions.hpp"
 
 namespace glint::rescan_test {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "kernels/image/roi_threshold.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::threshold_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kernels/image/roi_threshold.hpp"
-#include "tests/unit/kernels/image/picture_of.hpp"
+#include "tests/unit/kernels/image/test_image.hpp"
 
 namespace glint::threshold_work_test {
 namespace {

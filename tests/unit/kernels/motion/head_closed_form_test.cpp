@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/motion/head_anchor.hpp"
-#include "kernels/motion/head_walk.hpp"
+#include "kernels/motion/head_drift.hpp"
+#include "kernels/motion/head_drift_correction.hpp"
 #include "kernels/motion/motion_filter.hpp"
 #include "kernels/pose/lever_arm.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kernels/motion/stroke_noise.hpp"
+#include "kernels/motion/occlusion_noise.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "kernels/motion/interpolate.hpp"
-#include "kernels/motion/stroke_noise.hpp"
+#include "kernels/motion/occlusion_noise.hpp"
 #include "platform/dense.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"

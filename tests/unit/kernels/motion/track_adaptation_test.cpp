@@ -9,7 +9,7 @@
 #include <span>
 
 #include "kernels/motion/motion_track.hpp"
-#include "kernels/motion/stroke_noise.hpp"
+#include "kernels/motion/occlusion_noise.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
 namespace glint::track_adaptation_test {

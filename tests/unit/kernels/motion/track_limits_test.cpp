@@ -5,7 +5,7 @@
 #include <span>
 
 #include "kernels/motion/motion_track.hpp"
-#include "kernels/motion/stroke_noise.hpp"
+#include "kernels/motion/occlusion_noise.hpp"
 #include "kernels/motion/tool_motion.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 

@@ -258,7 +258,7 @@ TEST(Assign, CountsTheRivalsThatItLooksAt) {
   labelings.items[3].log_prior_ratio_m2 = 1e-6;
   tests = 0;
   EXPECT_EQ(alternative_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3)
-      << "foretold, and first";
+      << "predicted, and first";
   EXPECT_EQ(tests, 2);
   EXPECT_EQ(alternative_of(labelings, 5, 0, owners, Vector3::Zero(), tests), 3);
   labelings.count = 3;

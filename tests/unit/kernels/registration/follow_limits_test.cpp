@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/unit/kernels/registration/followed_world.hpp"
+#include "tests/unit/kernels/registration/tracked_arm_scene.hpp"
 
 namespace glint::follow_limits_test {
 namespace {

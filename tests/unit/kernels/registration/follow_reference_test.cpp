@@ -4,7 +4,7 @@
 
 #include "platform/dense.hpp"
 #include "tests/unit/heap_count.hpp"
-#include "tests/unit/kernels/registration/followed_world.hpp"
+#include "tests/unit/kernels/registration/tracked_arm_scene.hpp"
 
 namespace glint::follow_reference_test {
 namespace {

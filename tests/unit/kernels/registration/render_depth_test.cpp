@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/unit/kernels/registration/wall_picture.hpp"
+#include "tests/unit/kernels/registration/wall_depth_buffers.hpp"
 
 namespace glint::render_depth_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "kernels/angles.hpp"
 #include "kernels/pose/camera_model.hpp"
-#include "tests/unit/platform/cells/complaint.hpp"
+#include "tests/unit/platform/cells/error_message.hpp"
 
 namespace glint {
 namespace {

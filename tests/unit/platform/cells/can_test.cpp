@@ -4,7 +4,7 @@
 #include <string>
 
 #include "platform/cells/cell.hpp"
-#include "tests/unit/platform/cells/complaint.hpp"
+#include "tests/unit/platform/cells/error_message.hpp"
 
 namespace glint {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/platform/cells/complaint.hpp"
+#include "tests/unit/platform/cells/error_message.hpp"
 #include "tests/unit/platform/tools/calibrate/expect_message.hpp"
 
 namespace glint {

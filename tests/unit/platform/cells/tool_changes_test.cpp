@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "platform/cells/cell.hpp"
-#include "tests/unit/platform/cells/complaint.hpp"
+#include "tests/unit/platform/cells/error_message.hpp"
 
 namespace glint {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "kernels/pose/rigid_fit.hpp"
 #include "platform/cells/tool_file.hpp"
-#include "tests/unit/platform/cells/tools_at_hand.hpp"
+#include "tests/unit/platform/cells/test_tools.hpp"
 
 namespace glint {
 namespace {

@@ -11,7 +11,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/input_error.hpp"
-#include "tests/unit/platform/cells/tools_at_hand.hpp"
+#include "tests/unit/platform/cells/test_tools.hpp"
 
 namespace glint {
 namespace {

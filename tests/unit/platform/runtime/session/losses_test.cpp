@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/lab/baseline/seed_method.hpp"
+#include "platform/lab/baseline/baseline_method.hpp"
 #include "platform/runtime/session/loss_watch.hpp"
 #include "platform/runtime/session/sent_ticks.hpp"
 #include "tests/unit/platform/runtime/session/short_run.hpp"

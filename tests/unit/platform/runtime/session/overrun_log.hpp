@@ -13,7 +13,7 @@
 #include "kernels/wire/can_frames.hpp"
 #include "kernels/wire/output_record.hpp"
 #include "nodes/overrun_effects.hpp"
-#include "platform/runtime/session/choices.hpp"
+#include "platform/runtime/session/release_records.hpp"
 #include "platform/sinks/can/candump_line.hpp"
 #include "platform/sinks/record/recording_reader.hpp"
 

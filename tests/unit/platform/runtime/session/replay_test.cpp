@@ -10,7 +10,7 @@
 
 #include "platform/cells/tool_writer.hpp"
 #include "platform/input_error.hpp"
-#include "platform/runtime/session/choices.hpp"
+#include "platform/runtime/session/release_records.hpp"
 #include "platform/sinks/record/mcap_format.hpp"
 #include "tests/unit/platform/runtime/session/same_bytes.hpp"
 #include "tests/unit/platform/runtime/session/short_run.hpp"

@@ -79,7 +79,7 @@ bool supports_arrival_times() {
 
 // The time stamp of a queued frame is its arrival, not the time of its reading.
 TEST(CanButtons, StampAFrameWhenItArrivedNotWhenItWasRead) {
-  if (!supports_arrival_times()) GTEST_SKIP() << "no socket here says when its messages came";
+  if (!supports_arrival_times()) GTEST_SKIP() << "no socket here stamps its messages";
   std::vector<ButtonEvent> events;
   SocketPair pair([&](const ButtonEvent& event) { events.push_back(event); });
   const Time before = board_now();

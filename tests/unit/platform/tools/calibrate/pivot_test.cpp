@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "expect_message.hpp"
-#include "turned_poses.hpp"
+#include "pivot_poses.hpp"
 
 namespace glint {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "expect_message.hpp"
-#include "turned_poses.hpp"
+#include "pivot_poses.hpp"
 
 namespace glint {
 namespace {
