@@ -13,16 +13,23 @@ constexpr int k_pixel_steps = 60, k_lens_step_steps = 16, k_capsule_steps = 12, 
 constexpr int k_call_steps = 32, k_begin_steps = 512;  // per call; per start of a stage
 constexpr int k_write_steps = 12, k_snap_steps = 12;
 
-constexpr int pixel_steps_of(Lens lens) {
-  if (lens == Lens::pinhole) return k_pixel_steps;
-  return k_pixel_steps + (lens == Lens::lut ? 1 : k_ray_steps_max) * k_lens_step_steps;
+constexpr int pixel_steps_of(RaySearch search) {
+  switch (search) {
+    case RaySearch::none:
+      return k_pixel_steps;
+    case RaySearch::newton:
+      return k_pixel_steps + k_ray_steps_max * k_lens_step_steps;
+    case RaySearch::table:
+      return k_pixel_steps + k_lens_step_steps;
+  }
+  return k_pixel_steps;
 }
 
 constexpr MapSettings k_settings_max = limited_for_slices({});
 constexpr int k_points_steps =
-    k_call_steps + k_map_pixels_at_once *
-                       (pixel_steps_of(Lens::brown) + k_exclusion_capsules_max * k_capsule_steps +
-                        k_voxel_probes_max * k_probe_steps);
+    k_call_steps + k_map_pixels_at_once * (pixel_steps_of(RaySearch::newton) +
+                                           k_exclusion_capsules_max * k_capsule_steps +
+                                           k_voxel_probes_max * k_probe_steps);
 static_assert(k_map_item_steps_max - k_call_steps - k_begin_steps >=
               std::max({k_points_steps, RadiusOutlier::steps_max(k_settings_max.outliers),
                         MovingLeastSquares::steps_max(k_settings_max.smoothing),
@@ -81,7 +88,7 @@ bool MapSlices::look(const MapImage& picture) noexcept {
   picture_ = picture;
   picture_.left_out = picture.left_out.first(
       std::min<std::size_t>(picture.left_out.size(), k_exclusion_capsules_max));
-  pixel_steps_ = pixel_steps_of(picture.camera.lens) +
+  pixel_steps_ = pixel_steps_of(ray_search_of(picture.camera.lens)) +
                  static_cast<int>(picture_.left_out.size()) * k_capsule_steps;
   at_ = 0;
   stage_ = Stage::points;

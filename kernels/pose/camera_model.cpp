@@ -23,7 +23,7 @@ struct Distorted {
 
 // OpenCV's distortion model with its Jacobian: radial factor (1 + k1 r2 + k2 r4 + k3 r6) / (1 + k4
 // r2 + k5 r4 + k6 r6), then the tangential terms.
-Distorted distort(const std::array<double, 8>& k, const Vector2& p, bool with_denominator) {
+Distorted polynomial(const std::array<double, 8>& k, const Vector2& p, bool with_denominator) {
   const double x = p.x(), y = p.y(), r2 = x * x + y * y;
   const double top = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
   const double top_slope = k[0] + r2 * (2 * k[1] + r2 * 3 * k[4]);
@@ -43,6 +43,19 @@ Distorted distort(const std::array<double, 8>& k, const Vector2& p, bool with_de
   return out;
 }
 
+Distorted distort(const CameraModel& camera, const Vector2& p) {
+  switch (camera.lens) {
+    case Lens::pinhole:
+      break;
+    case Lens::brown:
+      return polynomial(camera.distortion, p, false);
+    case Lens::rational:
+    case Lens::lut:
+      return polynomial(camera.distortion, p, true);
+  }
+  return {p, 1, 0, 0, 1};
+}
+
 double determinant_of(const Distorted& d) { return d.dxdx * d.dydy - d.dxdy * d.dydx; }
 
 // Beyond its turning point a polynomial folds back: two rays would share a pixel there.
@@ -54,12 +67,25 @@ bool inside_lens(const CameraModel& camera, const Vector2& p, const Distorted& d
 
 // Initial guess: the distorted point divided by the radial factor there; it is closer to the
 // solution than the distorted point.
-Vector2 first_guess(const std::array<double, 8>& k, const Vector2& target, bool with_denominator) {
+Vector2 radial_guess(const std::array<double, 8>& k, const Vector2& target, bool with_denominator) {
   const double r2 = target.squaredNorm();
   const double top = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
   const double bottom = with_denominator ? 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) : 1.0;
   // Clamped, because the polynomials may have any value outside the lens.
   return target * std::clamp(bottom / std::max(top, 0.1), 0.25, 4.0);
+}
+
+Vector2 first_guess(const CameraModel& camera, const Vector2& target) {
+  switch (camera.lens) {
+    case Lens::pinhole:
+      break;
+    case Lens::brown:
+      return radial_guess(camera.distortion, target, false);
+    case Lens::rational:
+    case Lens::lut:
+      return radial_guess(camera.distortion, target, true);
+  }
+  return target;
 }
 
 struct Undistorted {
@@ -70,11 +96,10 @@ struct Undistorted {
 // Newton's method. Adds the steps taken to `steps`.
 Reason undistort(const CameraModel& camera, const Vector2& target, int steps_max, int& steps,
                  Undistorted& out) {
-  const bool rational = camera.lens == Lens::rational;
-  Vector2 p = first_guess(camera.distortion, target, rational);
+  Vector2 p = first_guess(camera, target);
   for (int i = 0; i < steps_max; ++i) {
     ++steps;
-    const Distorted d = distort(camera.distortion, p, rational);
+    const Distorted d = distort(camera, p);
     const Vector2 miss = target - d.position;
     const double determinant = determinant_of(d);
     if (!(std::abs(determinant) > 1e-12)) break;
@@ -96,10 +121,11 @@ Reason undistort(const CameraModel& camera, const Vector2& target, int steps_max
 }  // namespace
 
 Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexcept {
-  if (camera.lens == Lens::lut) return unproject(camera.table, pixel);
+  const RaySearch search = ray_search_of(camera.lens);
+  if (search == RaySearch::table) return unproject(camera.table, pixel);
   Vector2 p{(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
   if (!(p.squaredNorm() < 1e6)) return {Vector3::Zero(), Reason::out_of_range};
-  if (camera.lens != Lens::pinhole) {
+  if (search == RaySearch::newton) {
     int steps = 0;
     Undistorted found;
     const Reason reason = undistort(camera, p, k_ray_steps_max, steps, found);
@@ -116,7 +142,7 @@ Result<RayJacobian> unproject_with_jacobian(const CameraModel& camera, const Vec
   if (!(p.squaredNorm() < 1e6)) return {{}, Reason::out_of_range};
   // Derivative of p by the pixel: the lens's Jacobian, inverted.
   Vector2 dx{1 / camera.fx, 0}, dy{0, 1 / camera.fy};
-  if (camera.lens != Lens::pinhole) {
+  if (ray_search_of(camera.lens) != RaySearch::none) {
     Undistorted found;
     const Reason reason = undistort(camera, p, steps_max, lens_steps, found);
     if (reason != Reason::none) return {{}, reason};
@@ -147,15 +173,16 @@ Result<Vector2> project(const CameraModel& camera, const Vector3& point, int& le
   if (!(point.z() > 0)) return {Vector2::Zero(), Reason::out_of_range};
   Vector2 p{point.x() / point.z(), point.y() / point.z()};
   if (!(p.squaredNorm() < 1e6)) return {Vector2::Zero(), Reason::out_of_range};
-  if (camera.lens != Lens::pinhole) {
-    const Distorted d = distort(camera.distortion, p, camera.lens != Lens::brown);
-    if (camera.lens != Lens::lut && !inside_lens(camera, p, d)) {
+  const RaySearch search = ray_search_of(camera.lens);
+  if (search != RaySearch::none) {
+    const Distorted d = distort(camera, p);
+    if (search == RaySearch::newton && !inside_lens(camera, p, d)) {
       return {Vector2::Zero(), Reason::out_of_range};
     }
     p = d.position;
   }
   const Vector2 pixel{p.x() * camera.fx + camera.cx, p.y() * camera.fy + camera.cy};
-  if (camera.lens == Lens::lut) {
+  if (search == RaySearch::table) {
     return project(camera.table, point, pixel, {camera.cx, camera.cy}, lens_steps);
   }
   return {pixel};

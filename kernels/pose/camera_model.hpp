@@ -22,6 +22,22 @@ namespace glint {
 
 enum class Lens : std::uint8_t { pinhole, brown, rational, lut };
 
+// How the ray of a pixel is found: by a division, by Newton steps on the lens's distortion, in a
+// table.
+enum class RaySearch : std::uint8_t { none, newton, table };
+[[nodiscard]] constexpr RaySearch ray_search_of(Lens lens) noexcept {
+  switch (lens) {
+    case Lens::pinhole:
+      return RaySearch::none;
+    case Lens::brown:
+    case Lens::rational:
+      return RaySearch::newton;
+    case Lens::lut:
+      return RaySearch::table;
+  }
+  return RaySearch::none;
+}
+
 // Not owned. `height` rows of `width` unit rays (x, y, z), float; zero where the lens maps nothing.
 struct RayTable {
   int width = 0;

@@ -39,7 +39,7 @@ Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, in
 
 Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel, int steps_max,
                              int& lens_steps) noexcept {
-  if (camera.lens == Lens::lut) return from_table(camera, pixel, lens_steps);
+  if (ray_search_of(camera.lens) == RaySearch::table) return from_table(camera, pixel, lens_steps);
   const Result<RayJacobian> turning = unproject_with_jacobian(camera, pixel, steps_max, lens_steps);
   const RayJacobian& found = turning.value;
   LocalRays local{pixel, found.ray, found.along_x, found.along_y};
@@ -48,8 +48,14 @@ Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel, in
 }
 
 int ray_steps_needed(const CameraModel& camera) noexcept {
-  if (camera.lens == Lens::lut) return k_table_ray_steps;
-  if (camera.lens == Lens::pinhole) return 0;
+  switch (ray_search_of(camera.lens)) {
+    case RaySearch::none:
+      return 0;
+    case RaySearch::table:
+      return k_table_ray_steps;
+    case RaySearch::newton:
+      break;
+  }
   int most = 0;
   // The grid contains the borders: the rim takes the most steps.
   for (int row = 0; row <= k_grid_cells; ++row) {

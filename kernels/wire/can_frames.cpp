@@ -11,7 +11,9 @@
 
 namespace glint {
 
-static_assert(is_consistent(k_can_messages));
+static_assert(
+    is_consistent(k_can_messages),
+    "two CAN messages or signals share a name, an identifier or bits, or exceed their frame");
 
 namespace {
 

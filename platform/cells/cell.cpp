@@ -260,7 +260,7 @@ Limits limits_of(const Cell& cell) {
   limits.width = camera.width;
   limits.height = camera.height;
   limits.reflectivity_bytes = (cell.camera.reflectivity_bits + 7) / 8;
-  limits.lens_steps = camera.lens == Lens::lut ? k_lens_steps_max : 0;
+  limits.lens_steps = ray_search_of(camera.lens) == RaySearch::table ? k_lens_steps_max : 0;
   limits.ray_steps = cell.ray_steps;
   limits.tools = std::max(cell.budget.tools, cell.tools.count);  // some are added after reading
   limits.markers_per_tool = 3;

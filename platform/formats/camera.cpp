@@ -151,7 +151,7 @@ std::string camera_names() {
 }
 
 bool has_lens(const Camera& camera) {
-  return camera.model.lens == Lens::lut || camera.model.fx > 0;
+  return ray_search_of(camera.model.lens) == RaySearch::table || camera.model.fx > 0;
 }
 
 namespace {

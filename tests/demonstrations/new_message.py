@@ -7,9 +7,10 @@ capacities contain it without another change.
 Exit 0: they do; 1: something differs.
 """
 import pathlib
-import subprocess
 import sys
-import tempfile
+
+sys.dont_write_bytecode = True
+import changes
 
 TABLE, NODE = "kernels/wire/can_messages.hpp", "nodes/pack_can.cpp"
 CHANGES = {
@@ -62,25 +63,8 @@ EXPECTED = [
 
 
 def main():
-    compiler, source = sys.argv[1:]
-    source = pathlib.Path(source).resolve()
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        for file, replacements in CHANGES.items():
-            text = (source / file).read_text()
-            for old, new in replacements:
-                if text.count(old) != 1:
-                    print(f"{file}: {text.count(old)} times {old!r}; expected once")
-                    return 1
-                text = text.replace(old, new)
-            (folder / file).parent.mkdir(parents=True, exist_ok=True)
-            (folder / file).write_text(text)
-        program = folder / "program.cpp"
-        program.write_text("".join(f'#include "{file}"\n' for file in SOURCES) + PROGRAM)
-        subprocess.run([compiler, "-std=c++20", "-O0", f"-I{folder}", f"-I{source}", "-isystem",
-                        "/usr/include/eigen3", program, "-o", folder / "program"], check=True)
-        printed = subprocess.run([folder / "program"], check=True, text=True,
-                                 stdout=subprocess.PIPE).stdout.splitlines()
+    printed = changes.printed_lines(sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), CHANGES,
+                                    SOURCES, PROGRAM)
     missing = [line for line in EXPECTED if line not in printed]
     print("\n".join(f"not printed: {line}" for line in missing))
     print(f"{len(EXPECTED) - len(missing)} of {len(EXPECTED)} lines, {len(CHANGES)} files changed")
