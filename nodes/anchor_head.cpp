@@ -25,7 +25,7 @@ void AnchorHead::operator()(const FrameVerdict& verdict, const HeadPose& head,
     if (found.reason == Reason::none && !found.ambiguous()) {
       body = centroid_pose_of(found, tools.value().items[reference], verdict.stamp.mid_exposure);
       detected = &body;
-      ++counts_[1];
+      ++counts_[graph::loop_of<AnchorHead>("sights")];
     }
   }
   anchor.now = anchor.state.update(head, detected, noise);

@@ -68,7 +68,7 @@ void FollowMotion::update_partial(const PartialMarkers& partial, const Tool& sha
   const auto count = static_cast<std::size_t>(partial.count);
   if (tool.motion.update(time, {points.data(), count}, settings, sums_[slot]) != Reason::none)
     return;
-  ++counts_[2];
+  ++counts_[graph::loop_of<FollowMotion>("moved")];
   tool.partial_mask = mask;
   tool.estimate = tool.motion.estimate(sums_[slot]);
   tool.correlated_covariance = tool.motion.correlated_covariance(sums_[slot]);
@@ -86,7 +86,7 @@ void FollowMotion::operator()(
   counts_ = {{1}};
   int slot = 0;
   for (int t = partition.index; t < count; t += partition.count, ++slot) {
-    ++counts_[1];
+    ++counts_[graph::loop_of<FollowMotion>("tools")];
     TrackedTool& tool = followed.items[slot];
     tool = last.value()[partition.index].items[slot];
     tool.reason = verdict.reason;
@@ -124,8 +124,8 @@ void FollowMotion::operator()(
         settings, sums_[slot]);
     tool.reason = done.reason;
     if (done.reason != Reason::none) continue;
-    ++counts_[2];
-    counts_[3] += done.static_tests;
+    ++counts_[graph::loop_of<FollowMotion>("moved")];
+    counts_[graph::loop_of<FollowMotion>("rest_tests")] += done.static_tests;
     tool.estimate = tool.motion.estimate(sums_[slot]);
     tool.correlated_covariance = tool.motion.correlated_covariance(sums_[slot]);
     tool.noise = tool.motion.noise_scale();

@@ -80,8 +80,8 @@ void LocateRois::search_part(const ToolSet& set, int count, const Predictions& p
           prediction.undetected_last != missed || !box_of(camera, prediction, box))
         continue;
       ++boxes;
-      ++counts_[1];
-      counts_[2] += add_disjoint(box, rois);
+      ++counts_[graph::loop_of<LocateRois>("tools")];
+      counts_[graph::loop_of<LocateRois>("comparisons")] += add_disjoint(box, rois);
     }
   }
 }
@@ -98,11 +98,11 @@ void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<Too
   for (int t = 0; t < count && !whole_frame; ++t) {
     if (!set.items[t].present()) continue;
     const Prediction& prediction = predictions.tools[t];
-    ++counts_[1];
+    ++counts_[graph::loop_of<LocateRois>("tools")];
     Roi box;
     whole_frame =
         !prediction.has_prior || prediction.undetected_last || !box_of(camera, prediction, box);
-    if (!whole_frame) counts_[2] += add_disjoint(box, rois);
+    if (!whole_frame) counts_[graph::loop_of<LocateRois>("comparisons")] += add_disjoint(box, rois);
   }
   if (whole_frame) {
     rois.count = 1;

@@ -32,7 +32,7 @@ void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& 
   if (due(now.tick, settings.heartbeat_period, next_heartbeat_)) {
     frames.add(heartbeat_frame(settings.node, state(now.tick, samples)));
     booted_ = true;
-    ++counts_[3];
+    ++counts_[graph::loop_of<PackCan>("node_frames")];
   }
   for (int t = 0; t < count; ++t) {
     const PoseSample& sample = samples.items[static_cast<std::size_t>(t)];
@@ -41,7 +41,7 @@ void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& 
     const bool found_again = sample.has_pose() && last == TrackState::lost;
     if (lost_now || found_again) {
       frames.add(emergency_frame(settings.node, sample));
-      ++counts_[2];
+      ++counts_[graph::loop_of<PackCan>("emergencies")];
     }
     last = sample.state;
   }
@@ -53,7 +53,7 @@ void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& 
     if (begin && follow_up) {
       frames.add(begin.value);
       frames.add(follow_up.value);
-      counts_[3] += 2;
+      counts_[graph::loop_of<PackCan>("node_frames")] += 2;
     }
     time_sync_counter_ = static_cast<std::uint8_t>((time_sync_counter_ + 1) % 16);
   }

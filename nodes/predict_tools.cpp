@@ -76,7 +76,7 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
     sample.marker_mask = track.marker_mask;
 
     const Time when = now.tick + settings.actuation_delay;
-    ++counts_[2];
+    ++counts_[graph::loop_of<PredictTools>("poses")];
     MovingPose moving = integrator_.after(track.motion, when - track.motion.time).value;
     Matrix6 covariance = predict_pose(track.motion, when, settings.motion, track.noise).covariance +
                          track.head_covariance;

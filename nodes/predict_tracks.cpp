@@ -55,7 +55,7 @@ PredictTracks::PredictedMotion PredictTracks::predict_track(const Track& track, 
     prediction.T_camera_tool = track.T_camera_tool;  // kept at its last pose in the camera frame
     return {};
   }
-  ++counts_[2];
+  ++counts_[graph::loop_of<PredictTracks>("moving")];
   prediction.within_reach_only = speed_is_estimated(track.motion, settings.speed_sigma_max_m_s);
   const UncertainPose later = predict_pose(track.motion, time, settings.motion, track.noise);
   const bool goes_on = time - track.motion.time <= settings.horizon;
@@ -125,13 +125,13 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
     const Duration gap = now - track.newest.time;
     if (gap > settings.lost_after) continue;
 
-    ++counts_[1];
+    ++counts_[graph::loop_of<PredictTracks>("tools")];
     const Tool& tool = set.items[t];
     const PredictedMotion predicted_motion = predict_track(
         track, tool, now, anchor.value().state, head.valid ? &T_camera_world : nullptr, prediction);
     const int markers = markers_within(tool, limits);
     prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds(), predicted_motion);
-    counts_[3] += markers;
+    counts_[graph::loop_of<PredictTracks>("markers")] += markers;
     prediction.in_view = true;
     prediction.low_px = Vector2::Constant(1e9);
     prediction.high_px = Vector2::Constant(-1e9);
@@ -148,7 +148,7 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
   predictions.search_whole_frame = searched_everywhere > 0;
   predictions.search_part_of_frame =
       cut_short > 0 && predictions.frame_number % k_whole_frame_period != 0;
-  counts_[4] = lens_steps;
+  counts_[graph::loop_of<PredictTracks>("lens_steps")] = lens_steps;
 }
 
 }  // namespace glint

@@ -152,9 +152,9 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     }
     fitted.pose = refine_pose({fitted.seen.items.data(), fitted.seen.count}, tool.tip_m, nullptr,
                               within, prediction.follows_motion ? &expected : nullptr);
-    counts_[2] += fitted.pose.work.fits;
-    counts_[3] += fitted.pose.work.steps;
-    counts_[4] += fitted.pose.work.marker_steps;
+    counts_[graph::loop_of<RefinePose>("fits")] += fitted.pose.work.fits;
+    counts_[graph::loop_of<RefinePose>("steps")] += fitted.pose.work.steps;
+    counts_[graph::loop_of<RefinePose>("marker_steps")] += fitted.pose.work.marker_steps;
     if (is_fitted(fitted.pose))
       count +=
           add_hypotheses(fitted.pose, k, variance_factor, std::span(hypotheses).subspan(count));
@@ -196,9 +196,10 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     out.relinearised_covariance = of_middle.covariance;
   } else if (followed && kept.isolated_count() <= k_chance_agreement_max) {
     agreed = map_pose(items, expected, within.steps_max);
-    ++counts_[2];
-    counts_[3] += agreed.steps;
-    counts_[4] += agreed.steps * static_cast<int>(kept.count);
+    ++counts_[graph::loop_of<RefinePose>("fits")];
+    counts_[graph::loop_of<RefinePose>("steps")] += agreed.steps;
+    counts_[graph::loop_of<RefinePose>("marker_steps")] +=
+        agreed.steps * static_cast<int>(kept.count);
     out.has_relinearised = agreed.reason == Reason::none;
     out.relinearised_T_camera_tool = agreed.T_camera_tool;
     out.relinearised_covariance = agreed.covariance;
@@ -206,16 +207,18 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   if (kept.have_images) {
     out.residuals =
         residuals_of(items, {kept.variances.data(), kept.count}, hypothesis.T_camera_tool, now);
-    counts_[3] += k_residual_steps;
-    counts_[4] += k_residual_steps * static_cast<int>(kept.count);
+    counts_[graph::loop_of<RefinePose>("steps")] += k_residual_steps;
+    counts_[graph::loop_of<RefinePose>("marker_steps")] +=
+        k_residual_steps * static_cast<int>(kept.count);
   }
   const Pose published_pose = shallow ? between.T_camera_tool : hypothesis.T_camera_tool;
   // A point without an image comes from another tracker: camera errors do not apply.
   const Result<SystematicCovariance> systematic =
       systematic_covariance(items, {kept.rays.data(), kept.count}, published_pose, tool.middle_m(),
                             kept.have_images ? uncertainty : k_exact_camera, tool.marker_sigma_m);
-  counts_[3] += k_systematic_steps;
-  counts_[4] += k_systematic_steps * static_cast<int>(kept.count);
+  counts_[graph::loop_of<RefinePose>("steps")] += k_systematic_steps;
+  counts_[graph::loop_of<RefinePose>("marker_steps")] +=
+      k_systematic_steps * static_cast<int>(kept.count);
   out.systematic = systematic.value;
   out.reason = systematic.reason;
   if (out.reason != Reason::none) return;
@@ -276,7 +279,7 @@ void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
   for (int t = partition.index; t < count; t += partition.count) {
-    ++counts_[1];
+    ++counts_[graph::loop_of<RefinePose>("tools")];
     const auto i = static_cast<std::size_t>(t);
     FittedTool& out = fitted.tools[i];
     out = FittedTool{};

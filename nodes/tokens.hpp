@@ -9,6 +9,7 @@
 #include "kernels/motion/head_drift_correction.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/motion_track.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/expected_pose.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/noise_estimate.hpp"
@@ -66,7 +67,8 @@ struct Prediction {
 
   // Position covariance of a marker at `from_centroid_m` from the marker centroid, in the tool
   // frame.
-  [[nodiscard]] Matrix3 marker_position_covariance(const Vector3& from_centroid_m) const;
+  [[nodiscard]] Matrix3 marker_position_covariance(const Vector3& from_centroid_m) const noexcept
+      GLINT_NONBLOCKING;
 };
 struct Predictions {
   std::array<Prediction, k_tools_max> tools;
@@ -126,10 +128,11 @@ struct FittedTools {
 
 // Pose of the centroid of a tool's markers in the camera frame, with its covariance about the
 // camera's axes. At the centroid, translation and rotation are nearly uncorrelated.
-[[nodiscard]] UncertainPose centroid_pose_of(const FittedTool& found, const Tool& tool, Time time);
+[[nodiscard]] UncertainPose centroid_pose_of(const FittedTool& found, const Tool& tool,
+                                             Time time) noexcept GLINT_NONBLOCKING;
 // The same pose as input to the motion filter: the relinearised measurement where there is one.
 [[nodiscard]] UncertainPose filter_measurement_of(const FittedTool& found, const Tool& tool,
-                                                  Time time);
+                                                  Time time) noexcept GLINT_NONBLOCKING;
 
 // Head pose of this frame after drift correction by the reference body, and the state for the next
 // frame.
@@ -198,8 +201,8 @@ struct TipPosition {
 
   // Systematic covariance of the tip from that of the marker centroid. `axes_rotation` rotates the
   // tool's axes to the covariance's axes.
-  [[nodiscard]] Matrix6 systematic_of(const Matrix6& of_middle,
-                                      const Quaternion& axes_rotation) const;
+  [[nodiscard]] Matrix6 systematic_of(
+      const Matrix6& of_middle, const Quaternion& axes_rotation) const noexcept GLINT_NONBLOCKING;
 };
 [[nodiscard]] inline TipPosition tip_of(const Tool& tool) {
   return {tool.tip_m - tool.middle_m(), tool.tip_sigma_m};

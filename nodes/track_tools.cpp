@@ -143,7 +143,7 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
     // Imprecise poses count, too: otherwise a too large estimate would keep every pose imprecise.
     if (tool.reason == Reason::none && estimate_noise) add(found.residuals, noise, estimates.noise);
     if (tool.reason == Reason::none && tool.is_publishable) {
-      ++counts_[2];
+      ++counts_[graph::loop_of<TrackTools>("found")];
       accept(found, tool, shape, verdict.stamp, anchor.now, settings.velocity_gap_max, track);
       continue;
     }

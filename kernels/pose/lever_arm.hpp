@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -26,10 +27,12 @@ namespace glint {
 }
 
 // A pose's covariance with its reference moved by `offset`: J C J' with J = pose_by_pose(offset).
-[[nodiscard]] Matrix6 moved_covariance(const Matrix6& covariance, const Vector3& offset);
+[[nodiscard]] Matrix6 moved_covariance(const Matrix6& covariance,
+                                       const Vector3& offset) noexcept GLINT_NONBLOCKING;
 
 // A pose's covariance about the axes of the frame that `rotation` maps to.
-[[nodiscard]] Matrix6 rotated_covariance(const Matrix6& covariance, const Quaternion& rotation);
+[[nodiscard]] Matrix6 rotated_covariance(const Matrix6& covariance,
+                                         const Quaternion& rotation) noexcept GLINT_NONBLOCKING;
 
 // Upper bound on the variance in any direction: no eigenvalue exceeds the largest row sum
 // (Gershgorin 1931).

@@ -30,7 +30,7 @@ CHANGES = {
           frame_of(m, identifier_of(m, {.base = settings.base_identifier}));
       put(temperature.data, m.signal("Temperature"), 3725);
       frames.add(temperature);"""),
-        ("counts_[3] += 2;", "counts_[3] += 3;"),
+        ('"node_frames")] += 2;', '"node_frames")] += 3;'),
     ],
 }
 SOURCES = [f"kernels/wire/{name}.cpp" for name in
