@@ -50,17 +50,13 @@ concept Budgeted = requires(const Node& node, const Limits& limits) {
   { node.counts() } -> std::same_as<LoopCounts>;
 };
 
-// Not a constant expression: the node declares no loop of this name.
-void no_such_loop() noexcept;
-
 // Index of a node's loop by its name; with another name the program does not compile.
 template <class Node>
 [[nodiscard]] consteval std::size_t loop_of(std::string_view name) {
   for (std::size_t loop = 0; loop < Node::k_loops.size(); ++loop) {
     if (Node::k_loops[loop] == name) return loop;
   }
-  no_such_loop();
-  return k_loops_max;
+  __builtin_unreachable();  // no constant expression: the node declares no loop of this name
 }
 
 }  // namespace glint::graph

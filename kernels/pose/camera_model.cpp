@@ -44,16 +44,18 @@ Distorted polynomial(const std::array<double, 8>& k, const Vector2& p, bool with
 }
 
 Distorted distort(const CameraModel& camera, const Vector2& p) {
+  bool with_denominator = true;
   switch (camera.lens) {
     case Lens::pinhole:
-      break;
+      return {p, 1, 0, 0, 1};
     case Lens::brown:
-      return polynomial(camera.distortion, p, false);
+      with_denominator = false;
+      break;
     case Lens::rational:
     case Lens::lut:
-      return polynomial(camera.distortion, p, true);
+      break;
   }
-  return {p, 1, 0, 0, 1};
+  return polynomial(camera.distortion, p, with_denominator);
 }
 
 double determinant_of(const Distorted& d) { return d.dxdx * d.dydy - d.dxdy * d.dydx; }
@@ -67,7 +69,7 @@ bool inside_lens(const CameraModel& camera, const Vector2& p, const Distorted& d
 
 // Initial guess: the distorted point divided by the radial factor there; it is closer to the
 // solution than the distorted point.
-Vector2 radial_guess(const std::array<double, 8>& k, const Vector2& target, bool with_denominator) {
+Vector2 first_guess(const std::array<double, 8>& k, const Vector2& target, bool with_denominator) {
   const double r2 = target.squaredNorm();
   const double top = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
   const double bottom = with_denominator ? 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) : 1.0;
@@ -75,31 +77,18 @@ Vector2 radial_guess(const std::array<double, 8>& k, const Vector2& target, bool
   return target * std::clamp(bottom / std::max(top, 0.1), 0.25, 4.0);
 }
 
-Vector2 first_guess(const CameraModel& camera, const Vector2& target) {
-  switch (camera.lens) {
-    case Lens::pinhole:
-      break;
-    case Lens::brown:
-      return radial_guess(camera.distortion, target, false);
-    case Lens::rational:
-    case Lens::lut:
-      return radial_guess(camera.distortion, target, true);
-  }
-  return target;
-}
-
 struct Undistorted {
   Vector2 position = Vector2::Zero();  // on the plane z = 1
   Distorted there{};                   // one step before `position`: close enough
 };
 
-// Newton's method. Adds the steps taken to `steps`.
-Reason undistort(const CameraModel& camera, const Vector2& target, int steps_max, int& steps,
-                 Undistorted& out) {
-  Vector2 p = first_guess(camera, target);
+// Newton's method from an initial guess p. Adds the steps taken to `steps`.
+template <class Distortion>
+Reason invert(const Distortion& distorted, const CameraModel& camera, const Vector2& target,
+              Vector2 p, int steps_max, int& steps, Undistorted& out) {
   for (int i = 0; i < steps_max; ++i) {
     ++steps;
-    const Distorted d = distort(camera, p);
+    const Distorted d = distorted(p);
     const Vector2 miss = target - d.position;
     const double determinant = determinant_of(d);
     if (!(std::abs(determinant) > 1e-12)) break;
@@ -116,6 +105,23 @@ Reason undistort(const CameraModel& camera, const Vector2& target, int steps_max
     p += step;
   }
   return Reason::out_of_range;
+}
+
+Reason undistort(const CameraModel& camera, const Vector2& target, int steps_max, int& steps,
+                 Undistorted& out) {
+  const std::array<double, 8>& k = camera.distortion;
+  switch (camera.lens) {
+    case Lens::brown:
+      return invert([&k](const Vector2& p) { return polynomial(k, p, false); }, camera, target,
+                    first_guess(k, target, false), steps_max, steps, out);
+    case Lens::rational:
+      return invert([&k](const Vector2& p) { return polynomial(k, p, true); }, camera, target,
+                    first_guess(k, target, true), steps_max, steps, out);
+    case Lens::pinhole:
+    case Lens::lut:
+      break;
+  }
+  return Reason::out_of_range;  // no Newton search: ray_search_of
 }
 
 }  // namespace

@@ -37,11 +37,12 @@ Distorted equidistant(const std::array<double, 8>& k, const Vector2& p) {
 }
 
 Distorted distort(const CameraModel& camera"""),
-        ("return polynomial(camera.distortion, p, false);",
-         "return polynomial(camera.distortion, p, false);\n    case Lens::equidistant: "
-         "return equidistant(camera.distortion, p);"),
-        ("return radial_guess(camera.distortion, target, false);",
-         "return radial_guess(camera.distortion, target, false);\n    case Lens::equidistant: break;"),
+        ("      return {p, 1, 0, 0, 1};\n", "      return {p, 1, 0, 0, 1};\n    case Lens::equidistant:\n"
+         "      return equidistant(camera.distortion, p);\n"),
+        ("    case Lens::pinhole:\n    case Lens::lut:\n      break;\n",
+         "    case Lens::pinhole:\n    case Lens::lut:\n      break;\n    case Lens::equidistant:\n"
+         "      return invert([&k](const Vector2& p) { return equidistant(k, p); }, camera, target,\n"
+         "                    target, steps_max, steps, out);\n"),
         ('#include "kernels/pose/ray_table.hpp"',
          '#include "kernels/elementary.hpp"\n#include "kernels/pose/ray_table.hpp"'),
     ],
