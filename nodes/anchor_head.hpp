@@ -1,8 +1,8 @@
 // Corrects the drift of the head pose by a static reference body, where one is declared and
 // visible. All tools of the frame are then relative to that body. Without it, returns the headset's
 // own localisation covariance.
-// Cost:   one update of kernels/motion/head_drift_correction.hpp, more expensive with the body
-// visible. Worst:  the body is visible again after a gap.
+// Cost:   one update of kernels/motion/head_drift_correction.hpp; with the body visible, more.
+// Worst:  the body is visible again after a gap.
 #pragma once
 
 #include <array>

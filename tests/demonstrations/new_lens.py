@@ -1,8 +1,8 @@
 """A new lens changes three files: the camera model's two and the reader of calibration files.
 
 The script adds the equidistant lens of Kannala and Brandt (four coefficients, as ROS and OpenCV's
-fisheye module have it) to copies of them. Rays and pixels must agree with the closed form, and with
-the enumerator alone the compiler must name the lens.
+fisheye module have it) to copies of them. Rays and pixels must agree with the closed form, the
+reader must compile, and with the enumerator alone the compiler must name the lens.
 
     new_lens.py COMPILER SOURCE
 Exit 0: they do; 1: something differs.
