@@ -43,7 +43,7 @@ TEST(Field, StatesTheErrorsOfADeviceThatIsNotWhatItsCellStates) {
 // before, within a few of its stated standard deviations.
 TEST(Field, CalibrationsFindADevicesErrorsAndStateWhatTheyLeave) {
   const Cell drawn = field_cell(9, 30);
-  const Cell cell = calibrated_field_cell(drawn, {8, 40, 20, 30, 25});
+  const Cell cell = calibrated_field_cell(drawn, {8, 25, 16, 24, 20});
   const sim::Scenario device = scenario_of(drawn);
   const CameraUncertainty& stated = cell.camera.uncertainty;
 

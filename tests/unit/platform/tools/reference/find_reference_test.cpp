@@ -161,6 +161,7 @@ TEST(FindReference, CallsOnePictureAmbiguousIfNoRivalWasSearched) {
 
 TEST(FindReference, StatesTheErrorsThatAPictureShares) {
   FindReferenceSettings settings;
+  settings.search_alternatives = false;
   const std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
   settings.shared_errors = {0, 0};
   const Matrix6 without = find_reference(frames, k_truth, settings).found.alignment.covariance;
@@ -173,6 +174,7 @@ TEST(FindReference, StatesTheErrorsThatAPictureShares) {
 
 TEST(FindReference, StatesHowFarTheEndsOfItsPicturesLieApart) {
   FindReferenceSettings settings;
+  settings.search_alternatives = false;
   settings.shared_errors = {0, 0};
   std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
   frames.push_back(frames[0]);
