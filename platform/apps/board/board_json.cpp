@@ -44,7 +44,7 @@ Json recording_of(const SinkOutcome& sinks) {
 // Output of the first tool, as in the decoded CAN log.
 Json output_of(const SentTicksSummary& left) {
   const ToolTicks& tool = left.tools[0];
-  return {{"ticks_left", left.ticks},
+  return {{"ticks_sent", left.ticks},
           {"measured", tool.measured},
           {"predicted", tool.predicted},
           {"lost", tool.lost},
@@ -96,7 +96,7 @@ Json as_json(const CompanionResult& result) {
         {"sent", result.can.sent},
         {"dropped", result.can.dropped},
         {"failed", result.can.failed}}},
-      {"can_heard",
+      {"can_input",
        {{"buttons", result.can_received.received},
         {"refused", result.can_received.refused},
         {"why_not", result.can_receive_error}}},

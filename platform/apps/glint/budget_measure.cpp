@@ -22,7 +22,7 @@ namespace {
 
 struct MeasureCommand {
   std::string count = "instructions", arch, kernel, board, write, cache = "warm", json, program;
-  std::vector<std::string> enemies;
+  std::vector<std::string> loads;
   std::uint64_t inputs = 10'000;
   double margin_percent = 5, ns_per_instruction = 1;
   int jobs = 0, passes = 1;
@@ -49,7 +49,7 @@ Observations observe(const MeasureRequest& request, const std::string& what) {
 
 Observations observe_in_passes(const MeasureRequest& request, int passes) {
   const std::string what =
-      request.enemy == "none" ? "measuring" : "measuring beside " + request.enemy;
+      request.load == "none" ? "measuring" : "measuring beside " + request.load;
   Observations seen = observe(request, what);
   for (int pass = 2; pass <= passes; ++pass) {
     const std::string which = ", pass " + std::to_string(pass) + " of " + std::to_string(passes);
@@ -68,14 +68,14 @@ double median_of(const KernelObservations& kernel) {
 std::vector<InterferenceFactor> interference_of(MeasureRequest request, const Observations& alone,
                                                 const MeasureCommand& command) {
   std::vector<InterferenceFactor> factors;
-  for (const std::string& enemy : command.enemies) {
-    if (enemy == "none") continue;
-    request.enemy = enemy;
+  for (const std::string& load : command.loads) {
+    if (load == "none") continue;
+    request.load = load;
     const Observations beside = observe_in_passes(request, command.passes);
     for (std::size_t i = 0; i < alone.kernels.size(); ++i) {
       const double before = median_of(alone.kernels[i]);
       const double after = median_of(beside.kernels[i]);
-      factors.push_back({enemy, alone.kernels[i].name, before > 0 ? after / before : 1});
+      factors.push_back({load, alone.kernels[i].name, before > 0 ? after / before : 1});
     }
   }
   return factors;
@@ -112,7 +112,7 @@ void print(const Measurement& measurement) {
     }
   }
   for (const InterferenceFactor& one : measurement.interference) {
-    std::printf("beside %-10s %-15s x %.2f\n", one.enemy.c_str(), one.kernel.c_str(), one.factor);
+    std::printf("beside %-10s %-15s x %.2f\n", one.load.c_str(), one.kernel.c_str(), one.factor);
   }
 }
 
@@ -149,8 +149,9 @@ int measure_costs(const MeasureCommand& command) {
     throw InputError(
         "--write stores the measured costs in a board file; expected it without --board");
   }
-  if (request.count_instructions && !command.enemies.empty()) {
-    throw InputError("--enemy changes time, not instructions; expected it with --count time");
+  if (request.count_instructions && !command.loads.empty()) {
+    throw InputError(
+        "--interference changes time, not instructions; expected it with --count time");
   }
   if (request.count_instructions && command.passes > 1) {
     throw InputError("--passes: instruction counts repeat exactly; expected it with --count time");
@@ -239,7 +240,9 @@ void add_budget_measure(CLI::App& budget, int& exit_code) {
                    "passes over all inputs; each input counts with its least time")
       ->check(in_range(1, 100))
       ->capture_default_str();
-  command->add_option("--enemy", arguments->enemies, "load that runs beside a further measurement")
+  command
+      ->add_option("--interference,--enemy", arguments->loads,
+                   "load that runs beside a further measurement")
       ->check(CLI::IsMember({"none", "cache", "bandwidth", "other_core", "interrupts"}));
   command->add_option("--jobs", arguments->jobs, "kernels counted in parallel; 0: one a core")
       ->check(in_range(0, 256));

@@ -20,7 +20,7 @@ namespace glint {
 namespace {
 
 struct CameraArguments {
-  std::string recording, config, ray_table, board = "9x6", pattern = "chessboard",
+  std::string recording, config, ray_table, target = "9x6", pattern = "chessboard",
                                             lens = "rational";
   std::vector<std::string> images;
   int width = 0;
@@ -58,10 +58,10 @@ int run_table(const CameraArguments& arguments) {
 CameraCalibrationSettings target_settings(const CameraArguments& arguments) {
   CameraCalibrationSettings settings;
   char rest = 0;
-  if (std::sscanf(arguments.board.c_str(), "%dx%d%c", &settings.columns, &settings.rows, &rest) !=
+  if (std::sscanf(arguments.target.c_str(), "%dx%d%c", &settings.columns, &settings.rows, &rest) !=
           2 ||
       settings.columns < 3 || settings.rows < 3 || settings.columns > 50 || settings.rows > 50) {
-    throw InputError("--board " + arguments.board +
+    throw InputError("--target " + arguments.target +
                      ": expected COLUMNSxROWS of inner corners or circles, 3 to 50 each, e.g. 9x6");
   }
   settings.pattern =
@@ -123,15 +123,16 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
   auto arguments = std::make_shared<CameraArguments>();
   command->footer(
       "Examples:\n"
-      "  glint calibrate camera --images board/*.png --board 9x6 --spacing-mm 25\n"
-      "  glint calibrate camera --recording frames --config cell.toml --board 9x6 --spacing-mm 25\n"
+      "  glint calibrate camera --images board/*.png --target 9x6 --spacing-mm 25\n"
+      "  glint calibrate camera --recording frames --config cell.toml --target 9x6 --spacing-mm "
+      "25\n"
       "  glint calibrate camera --ray-table ahat_lut.npy --json lens.json\n"
       "--recording: images of reflectivity; the cell has their size and bits.\n"
       "From images the folder also holds camera_rays.npy, for a cell's camera.ray_table.");
   command->add_option("--images", arguments->images, "images of the calibration target (PNG, PGM)");
   add_recording_options(*command, arguments->recording, arguments->config);
   command
-      ->add_option("--board", arguments->board,
+      ->add_option("--target,--board", arguments->target,
                    "inner corners or circles of the target, COLUMNSxROWS")
       ->capture_default_str();
   command

@@ -57,7 +57,8 @@ void add_reference(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  glint reference --urdf arm.urdf --package-dir meshes --export-model arm.ply\n"
       "  glint reference --urdf arm.urdf --package-dir meshes --camera camera_info.yaml\n"
-      "    --depth a.npy b.npy --joints a.txt b.txt --seed 0.4,0.2,1.2,-1.6,0.1,0.8 --json r.json\n"
+      "    --depth a.npy b.npy --joints a.txt b.txt --initial-pose 0.4,0.2,1.2,-1.6,0.1,0.8 --json "
+      "r.json\n"
       "  glint reference --listen 60 --package-dir meshes --camera camera_info.yaml --depth a.npy\n"
       "Exit: 0 accepted, 1 ambiguous or refused, 2 bad use or input, 3 no such interface.");
   auto* const urdf = command->add_option("--urdf", robot.urdf, "URDF file of the robot");
@@ -75,7 +76,7 @@ void add_reference(CLI::App& app, int& exit_code) {
   command->add_option("--mask", scene.masks,
                       "masks of the robot's pixels, one file for each depth image");
   command
-      ->add_option("--seed", arguments->initial_guess,
+      ->add_option("--initial-pose,--seed", arguments->initial_guess,
                    "initial T_camera_base: x,y,z,roll,pitch,yaw in metres and radians, fixed axes")
       ->delimiter(',')
       ->expected(6);

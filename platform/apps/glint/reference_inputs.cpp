@@ -39,13 +39,13 @@ void require_inputs(const ReferenceArguments& arguments) {
       {"--camera", !exports && arguments.scene.camera.empty()},
       {"--urdf", !listens && !arguments.has_robot()},
       {"--joints", !listens && !exports && arguments.scene.joints.empty()},
-      {"--seed", !listens && !exports && arguments.initial_guess.empty()}};
+      {"--initial-pose", !listens && !exports && arguments.initial_guess.empty()}};
   for (const auto& [option, missing] : wanted) {
     if (missing) {
-      throw InputError(
-          std::string(option) +
-          " is missing; expected --urdf or --model, --depth, --joints, --camera and --seed (with "
-          "--listen only --depth and --camera), or --urdf and --export-model alone");
+      throw InputError(std::string(option) +
+                       " is missing; expected --urdf or --model, --depth, --joints, --camera and "
+                       "--initial-pose (with "
+                       "--listen only --depth and --camera), or --urdf and --export-model alone");
     }
   }
   if (!arguments.export_file.empty() && !arguments.model.empty()) {
@@ -102,7 +102,7 @@ Pose initial_pose_of(ReferenceArguments& arguments, const AnyRobot& robot,
     std::printf("joints     %zu of %s\n", received.positions.size(), k_joint_states_topic);
   }
   if (!arguments.initial_guess.empty())
-    return checked(pose_from_xyz_rpy(arguments.initial_guess), "--seed");
+    return checked(pose_from_xyz_rpy(arguments.initial_guess), "--initial-pose");
   const Vector3& t = received.guess.pose.translation;
   std::printf("guess      [%.3f, %.3f, %.3f] m of %s, in frame \"%s\"\n", t.x(), t.y(), t.z(),
               k_initial_pose_topic, printable(received.guess.frame.data()).c_str());

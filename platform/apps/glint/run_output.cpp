@@ -189,7 +189,7 @@ ordered_json output_of(const Cell& cell, const SessionResult& result) {
          {"longest_without_measurement_ms", milliseconds_of(tool.longest_without_measurement)}});
     if (result.by_rate) tools.back()["by_rate"] = by_rate(*result.by_rate, i, cell.camera.period);
   }
-  return {{"ticks_left", result.sent.ticks},
+  return {{"ticks_sent", result.sent.ticks},
           {"longest_gap_ms", milliseconds_of(result.sent.longest_gap)},
           {"source_late", source_late_part(result)},
           {"tools", tools}};

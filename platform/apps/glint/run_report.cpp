@@ -75,7 +75,7 @@ ordered_json budget_of(const RunSchedule& plan, const SessionResult& result) {
   return {{"board", plan.board},
           {"plan", plan.plan_file},
           {"bound_us", bound.is_null() ? ordered_json::object() : bound},
-          {"doubts", plan.caveats},
+          {"caveats", plan.caveats},
           {"frames_above_bound", above_bound(plan, result)},
           {"overruns",
            {{"frame", frame.total()},
@@ -192,7 +192,7 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
       {"can_failed", result.can.failed},
       {"can_bus_load", result.can_bus_load},
       {"key_events", result.key_events},
-      {"can_heard",
+      {"can_input",
        {{"buttons", result.can_received.received},
         {"refused", result.can_received.refused},
         {"why_not", result.can_receive_error}}},
@@ -204,7 +204,7 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
       {"dds_missed", result.dds_reader.missed},
       {"dds_poses_written", result.dds.poses_written},
       {"dds_poses_received", result.dds_reader.poses_received},
-      {"dds_heard",
+      {"dds_input",
        {{"joint_states", result.dds_received.joints},
         {"robot_descriptions", result.dds_received.descriptions},
         {"initial_poses", result.dds_received.guesses},
@@ -227,8 +227,8 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
       {"best_effort", best_effort(result)},
       {"refused", result.refused},
       {"budget", budget_of(plan, result)}};
-  summary["can_heard"]["released"] = result.can_received.released;
-  summary["dds_heard"]["released"] = result.dds_received.released;
+  summary["can_input"]["released"] = result.can_received.released;
+  summary["dds_input"]["released"] = result.dds_received.released;
   summary["dds_tool_changes"] = tool_orders(cell, result);
   if (result.background) summary["background"] = as_json(*result.background);
   return summary;
@@ -267,7 +267,7 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                                  std::to_string(result.latencies.size()) +
                                  " frames: the bound does not hold");
   }
-  for (const auto& doubt : budget.at("doubts")) row("  doubt", doubt.get<std::string>());
+  for (const auto& caveat : budget.at("caveats")) row("  caveat", caveat.get<std::string>());
   const auto overruns = [](const OverrunCounts& counts) {
     return std::to_string(counts.missed) + " missed, " + std::to_string(counts.will_miss) +
            " predicted";

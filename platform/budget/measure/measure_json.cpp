@@ -65,7 +65,7 @@ nlohmann::ordered_json measurement_json(const Measurement& measurement) {
   for (const MeasuredCosts& kernel : measurement.kernels) kernels.push_back(kernel_json(kernel));
   nlohmann::ordered_json interference = nlohmann::ordered_json::array();
   for (const InterferenceFactor& one : measurement.interference) {
-    interference.push_back({{"enemy", one.enemy}, {"kernel", one.kernel}, {"factor", one.factor}});
+    interference.push_back({{"load", one.load}, {"kernel", one.kernel}, {"factor", one.factor}});
   }
   return {{"board", measurement.board},
           {"build", measurement.build},

@@ -2,7 +2,7 @@
 //
 //   glint_measure --list            # its build, then its kernels
 //   glint_measure --kernel FindBlobs --inputs 10000 --counter time|marks --out FILE
-//     [--cache warm|cold] [--enemy cache] [--repeat 7]
+//     [--cache warm|cold] [--interference cache] [--repeat 7]
 //
 // It links only the kernels and reads no other files. It therefore runs on a bare computer and,
 // with `marks`, in an emulator that counts the instructions between two markers.
@@ -21,8 +21,8 @@
 
 #include "glint_build_signature.hpp"
 #include "platform/budget/measure/cycle_clock.hpp"
-#include "platform/budget/measure/enemies.hpp"
 #include "platform/budget/measure/input_numbers.hpp"
+#include "platform/budget/measure/interference_load.hpp"
 #include "platform/budget/measure/markers.hpp"
 #include "platform/budget/measure/measured_limits.hpp"
 
@@ -32,7 +32,7 @@ namespace {
 constexpr std::size_t k_evicting_bytes = 16u << 20;  // larger than the private caches of a core
 
 struct MeasureArguments {
-  std::string kernel, out, counter = "time", cache = "warm", enemy = "none";
+  std::string kernel, out, counter = "time", cache = "warm", load = "none";
   std::uint64_t inputs = 1000;
   int repeat = 7;
   bool list = false;
@@ -131,7 +131,7 @@ bool measure(MeasuredKernel& kernel, const MeasureArguments& arguments) {
     write_counts(out, kernel.worst(limits[i]), loops);
   }
   std::fprintf(out, "\n");
-  const Enemy enemy(arguments.enemy);
+  const InterferenceLoad load(arguments.load);
   Meter meter(arguments);
   for (std::uint64_t running = 0; running < arguments.inputs; ++running) {
     const MeasuredInput input = input_of(running);
@@ -164,8 +164,8 @@ bool parse(int argc, char** argv, MeasureArguments& arguments) {
       arguments.counter = value;
     } else if (name == "--cache") {
       arguments.cache = value;
-    } else if (name == "--enemy") {
-      arguments.enemy = value;
+    } else if (name == "--interference") {
+      arguments.load = value;
     } else if (name == "--inputs") {
       arguments.inputs = std::strtoull(value, nullptr, 10);
     } else if (name == "--repeat") {
@@ -180,9 +180,10 @@ bool parse(int argc, char** argv, MeasureArguments& arguments) {
 int run(int argc, char** argv) {
   MeasureArguments arguments;
   if (!parse(argc, argv, arguments)) {
-    std::fprintf(stderr,
-                 "glint_measure: expected --list, or --kernel NAME --out FILE [--inputs N]"
-                 " [--counter time|marks] [--cache warm|cold] [--enemy NAME] [--repeat N]\n");
+    std::fprintf(
+        stderr,
+        "glint_measure: expected --list, or --kernel NAME --out FILE [--inputs N]"
+        " [--counter time|marks] [--cache warm|cold] [--interference NAME] [--repeat N]\n");
     return 2;
   }
   if (arguments.list) {

@@ -9,7 +9,7 @@ namespace glint {
 
 // Growth factor of a kernel's median beside an interference workload.
 struct InterferenceFactor {
-  std::string enemy, kernel;
+  std::string load, kernel;
   double factor = 1;
 };
 

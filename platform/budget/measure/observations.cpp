@@ -82,7 +82,7 @@ class MeasuringRun {
     command.insert(command.end(), {request_.program, "--kernel", kernel, "--inputs",
                                    std::to_string(request_.inputs), "--out", kernel + ".txt",
                                    "--counter", request_.count_instructions ? "marks" : "time",
-                                   "--cache", request_.cache, "--enemy", request_.enemy});
+                                   "--cache", request_.cache, "--interference", request_.load});
     return command;
   }
   int start(const std::vector<std::string>& command, const std::string& name) const {

@@ -31,7 +31,7 @@ struct MeasureRequest {
   std::string cpu_model;  // emulated processor; a program's start-up code may depend on it
   std::string plugin;     // glint_count_instructions.so
   std::string kernel;     // empty: all
-  std::string cache = "warm", enemy = "none";
+  std::string cache = "warm", load = "none";
   std::uint64_t inputs = 10'000;
   int jobs = 1;
 };

@@ -119,18 +119,19 @@ Section interference_section(const ReportSources& sources) {
   Table table{
       "Ratio of a kernel's largest cost beside a named interference to its largest cost alone. "
       "Bounds exclude it unless the board file includes it.",
-      {{"Kernel"}, {"Enemy"}, {"Factor", NumberKind::observed, true}, {"Measured on"}},
+      {{"Kernel"}, {"Load"}, {"Factor", NumberKind::observed, true}, {"Measured on"}},
       {}};
   for (const JsonView& measure : sources.measures) {
     for (const JsonView& item : measure.list("interference")) {
+      const char* load = item.has("load") ? "load" : "enemy";  // in older files
       table.rows.push_back({{item.text("kernel")},
-                            {item.text("enemy")},
+                            {item.text(load)},
                             {us_text(item.number("factor"))},
                             {conditions_of(measure)}});
     }
   }
   if (table.rows.empty()) {
-    section.blocks.push_back(missing_input("--measure F", "glint budget measure --enemy"));
+    section.blocks.push_back(missing_input("--measure F", "glint budget measure --interference"));
   } else {
     section.blocks.push_back(table);
   }

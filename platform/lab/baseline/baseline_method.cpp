@@ -28,7 +28,7 @@ TrackedTool followed_from(const Track& before, const TimedPose& now, ReferenceFr
 
 }  // namespace
 
-BaselineMethod::BaselineMethod(const Cell& cell) : seed_(cell.camera, cell.tools.items[0]) {
+BaselineMethod::BaselineMethod(const Cell& cell) : tracker_(cell.camera, cell.tools.items[0]) {
   ToolSet set = cell.tools;
   set.count = 1;
   tools_.set(set, 1, 0);
@@ -44,7 +44,7 @@ const Estimates& BaselineMethod::process(const ArrivedFrame& arrived) {
   fitted = FittedTool{};
   fitted.reason = verdict.reason;
   if (verdict.usable()) {
-    const BaselineResult result = seed_.process(arrived.frame, arrived.head);
+    const BaselineResult result = tracker_.process(arrived.frame, arrived.head);
     fitted.reason = result.reason;
     fitted.rms_m = result.rms_m;
     fitted.T_camera_tool = result.T_camera_tool;

@@ -19,7 +19,7 @@ class BaselineMethod final : public FrameMethod {
   [[nodiscard]] const Estimates& process(const ArrivedFrame& arrived) override;
 
  private:
-  BaselineTracker seed_;
+  BaselineTracker tracker_;
   CheckFrame check_;
   TrackTools track_;
   graph::Latest<ToolSet> tools_;

@@ -113,7 +113,7 @@ ExperimentCase case_of(const BoundCase& c, const BoundErrors& errors, bool judge
 }
 
 struct Methods {
-  BoundErrors glint{"glint"}, svd{"svd"}, seed{"seed"};
+  BoundErrors glint{"glint"}, svd{"svd"}, baseline{"baseline"};
 };
 
 void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers,
@@ -138,7 +138,7 @@ void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers
   }
   const Matrix6 tip_bound = cramer_rao_bound(camera, tool, truth, tool.tip_m, c.noise);
   const Matrix6 mean_bound = cramer_rao_bound(camera, tool, truth, marker_mean(tool), c.noise);
-  for (BoundErrors* errors : {&methods.glint, &methods.svd, &methods.seed}) ++errors->frames;
+  for (BoundErrors* errors : {&methods.glint, &methods.svd, &methods.baseline}) ++errors->frames;
   const RefinedPose refined = refine_pose(weighted, tool.tip_m, nullptr, settings.refine);
   if (refined.reason == Reason::none) {
     methods.glint.add(c.tool, drawn, refined.T_camera_tool, mean_bound, tip_bound);
@@ -147,9 +147,9 @@ void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers
   const RigidFit svd = fit_rigid(model, measured);
   if (svd.reason == Reason::none)
     methods.svd.add(c.tool, drawn, svd.transform, mean_bound, tip_bound);
-  const BaselineMatch seed = match_tool(measured, tool, {});
-  if (seed.reason == Reason::none)
-    methods.seed.add(c.tool, drawn, seed.T_camera_tool, mean_bound, tip_bound);
+  const BaselineMatch baseline = match_tool(measured, tool, {});
+  if (baseline.reason == Reason::none)
+    methods.baseline.add(c.tool, drawn, baseline.T_camera_tool, mean_bound, tip_bound);
 }
 
 Methods run_case(const BoundCase& c, std::size_t case_number, const Camera& camera, int samples,
@@ -186,7 +186,7 @@ CaseList run_bound(const CaseOptions& options) {
   CaseList list{"bound", {}, {}};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const Methods methods = run_case(cases[k], k, camera, samples, options.seed);
-    for (const BoundErrors* errors : {&methods.glint, &methods.svd, &methods.seed})
+    for (const BoundErrors* errors : {&methods.glint, &methods.svd, &methods.baseline})
       list.cases.push_back(case_of(cases[k], *errors, cases[k].tilt.judged && !options.quick));
     if (options.progress) options.progress(static_cast<int>(k) + 1, static_cast<int>(cases.size()));
   }
@@ -201,7 +201,7 @@ std::vector<ExperimentCase> bound_cases_at(const Camera& camera, double range_m,
   for (std::size_t k = 0; k < cases.size(); ++k) {
     if (!cases[k].tilt.judged || cases[k].range_m != range_m) continue;
     const Methods methods = run_case(cases[k], k, camera, samples, seed);
-    for (const BoundErrors* errors : {&methods.glint, &methods.svd, &methods.seed})
+    for (const BoundErrors* errors : {&methods.glint, &methods.svd, &methods.baseline})
       out.push_back(case_of(cases[k], *errors, false));
   }
   return out;

@@ -32,7 +32,7 @@ struct Figure {
 
 struct ExperimentCase {
   std::string name;    // "8700339 at 0.5 m, 3 mm"
-  std::string method;  // "glint", "svd", "seed", ...
+  std::string method;  // "glint", "svd", "baseline", ...
   std::int64_t n = 0;  // number of samples
   std::vector<Figure> figures;
 };

@@ -37,7 +37,7 @@ class Errors {
 };
 
 struct Outcome {
-  Errors raw, corrected, weighted, binary, seed;
+  Errors raw, corrected, weighted, binary, baseline;
   double variance_sum = 0;  // stated, sum of both axes
   double range_squares = 0, range_variance_sum = 0, range_sum = 0;
   std::int64_t markers = 0, flagged = 0;
@@ -75,7 +75,7 @@ Outcome measure(const CentroidCase& one, int spheres, std::uint64_t seed) {
       add(outcome, one, truth, *located);
     }
     if (const auto place = methods.locate_by_baseline(frame, truth.centre_px)) {
-      outcome.seed.add(*place - truth.centre_px);
+      outcome.baseline.add(*place - truth.centre_px);
     }
   }
   return outcome;
@@ -142,7 +142,7 @@ class Plots {
     add(kind, "Glint", one, outcome.raw);
     add(kind, "weight I - threshold", one, outcome.weighted);
     add(kind, "binary", one, outcome.binary);
-    add(kind, "seed", one, outcome.seed);
+    add(kind, "baseline", one, outcome.baseline);
   }
   [[nodiscard]] std::vector<std::string> write(const std::string& folder) const {
     std::vector<std::string> written;
@@ -191,7 +191,7 @@ CaseList run_centroid_experiment(const CaseOptions& options) {
     list.cases.push_back(glint_case(one, outcome, spheres));
     list.cases.push_back(other_case(one, "weight I - threshold", outcome.weighted, spheres));
     list.cases.push_back(other_case(one, "binary", outcome.binary, spheres));
-    list.cases.push_back(other_case(one, "seed", outcome.seed, spheres));
+    list.cases.push_back(other_case(one, "baseline", outcome.baseline, spheres));
     if (outcome.markers > 0) list.cases.push_back(range_case(one, outcome));
   }
   for (const CentroidCase& one : disturbed) {

@@ -22,7 +22,7 @@ namespace glint {
 namespace {
 
 constexpr int k_clutter_frames = 2000, k_clutter_frames_quick = 60;
-constexpr int k_baseline_frames = 300, k_seed_frames_quick = 10;
+constexpr int k_baseline_frames = 300, k_baseline_frames_quick = 10;
 constexpr std::array k_false_markers = {0, 20, 50, 100, 200};
 constexpr int k_runs_per_blob = 8;  // as for a cell file that states only blobs
 
@@ -113,11 +113,11 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   configure(cell, *tracker);
   tracker->latest<ToolSet>().set(c.tools, 1, 0);
   const sim::Simulator simulator(c.scenario);
-  BaselineTrackers seed(c);
+  BaselineTrackers baseline(c);
   ClutterTally glint(c.tools), fits(c.tools), published(c.tools);
   SearchTally search;
   sim::SimFrame frame;
-  const int seed_frames = options.quick ? k_seed_frames_quick : k_baseline_frames;
+  const int baseline_frames = options.quick ? k_baseline_frames_quick : k_baseline_frames;
   for (int i = 0; i < simulator.frame_count(); ++i) {
     simulator.render(i, frame);
     tracker->input<Frame>() = frame.view();
@@ -128,7 +128,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
     const FrameOutcome fitted = outcome_of(estimates, tracker.get());
     fits.add(fitted, frame.truth);
     glint.add(as_followed(fitted, estimates, c.tools, frame.head), frame.truth);
-    if (i < seed_frames) published.add(seed.process(frame.view(), frame.head), frame.truth);
+    if (i < baseline_frames) published.add(baseline.process(frame.view(), frame.head), frame.truth);
   }
   std::vector<Figure> figures = glint.figures(c.tracked, c.wrong);
   figures.push_back({"gross_fits", "", static_cast<double>(fits.gross())});
@@ -136,7 +136,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   figures.push_back({"named_most", "", static_cast<double>(search.steps_most)});
   figures.push_back({"searches_full", "", static_cast<double>(search.exhausted)});
   list.cases.push_back({c.name, "glint", glint.trackable(), std::move(figures)});
-  list.cases.push_back({c.name, "seed", published.trackable(), published.figures({}, {})});
+  list.cases.push_back({c.name, "baseline", published.trackable(), published.figures({}, {})});
 }
 
 // `refused` is 1 if the cell reader refuses the two tools.

@@ -74,7 +74,7 @@ std::string declared_parameters(const std::vector<ExperimentRun>& runs) {
     json["reference"] = {{"position_sigma_m", scenario.reference.position_sigma_m},
                          {"angle_sigma_rad", scenario.reference.angle_sigma_rad}};
   }
-  json["seed_method"] = baseline_json(BaselineSettings{});
+  json["baseline_settings"] = baseline_json(BaselineSettings{});
   json["runs"] = Json::array();
   for (const ExperimentRun& run : runs) {
     json["runs"].push_back({{"seed", run.scenario.seed},

@@ -103,18 +103,18 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
 
   const Tool tool = runs.front().scenario.tools.front().tool;
   const sim::ReferenceSettings& judge = runs.front().scenario.reference;
-  MethodRecord seed("seed", tool, judge), glint("glint", tool, judge),
+  MethodRecord baseline("baseline", tool, judge), glint("glint", tool, judge),
       referenced("glint with a reference body", tool, judge),
       perfect("a perfect tracker", tool, judge);
   sim::SimFrame frame, with_reference_body;
   for (const ExperimentRun& run : runs) {
     const sim::Simulator simulator(run.scenario), reference_simulator(with_reference(run.scenario));
-    BaselineTracker seed_tracker(run.scenario.camera, tool);
+    BaselineTracker baseline_tracker(run.scenario.camera, tool);
     const HeadNoise noise;  // as shipped: the simulated headset differs
     GlintChain free_chain(run.scenario.camera, ChainSetup{{tool}, -1, noise});
     GlintChain referenced_chain(run.scenario.camera,
                                 ChainSetup{{tool, reference_body()}, 1, noise});
-    seed.begin_run();
+    baseline.begin_run();
     glint.begin_run();
     referenced.begin_run();
     perfect.begin_run();
@@ -123,8 +123,8 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
     for (int i = run.skipped; i < end; ++i) {
       simulator.render(i, frame);
       reference_simulator.render(i, with_reference_body);
-      const auto seed_answer = timed([&]() -> Result<UncertainPose> {
-        const BaselineResult answer = seed_tracker.process(frame.view(), frame.head);
+      const auto baseline_answer = timed([&]() -> Result<UncertainPose> {
+        const BaselineResult answer = baseline_tracker.process(frame.view(), frame.head);
         const Pose T_tool_tip{Quaternion::Identity(), tool.tip_m};
         return {
             {{}, frame.head.T_world_camera * answer.T_camera_tool * T_tool_tip, Matrix6::Zero()},
@@ -140,7 +140,7 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
       const auto referenced_answer = followed(referenced_chain, with_reference_body);
       const bool aligning = i < run.skipped + run.aligning;
       const auto take = aligning ? &MethodRecord::take_aligning : &MethodRecord::add_evaluated;
-      (seed.*take)(frame, seed_answer.first, seed_answer.second);
+      (baseline.*take)(frame, baseline_answer.first, baseline_answer.second);
       (glint.*take)(frame, glint_answer.first, glint_answer.second);
       (referenced.*take)(with_reference_body, referenced_answer.first, referenced_answer.second);
       const Pose T_camera_tip = frame.truth.T_world_camera.inverse() *
@@ -152,11 +152,11 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
         options.progress(done, total);
     }
   }
-  result.seed = seed.figures();
+  result.baseline = baseline.figures();
   result.glint = glint.figures();
   result.glint_held = referenced.figures();
   result.perfect = perfect.figures();
-  result.path.seed_m = seed.path_m();
+  result.path.baseline_m = baseline.path_m();
   result.path.glint_m = glint.path_m();
   return result;
 }

@@ -73,13 +73,13 @@ struct PublishedFigures {
 
 // Tip positions along one run, in the reference's frame, one per frame; not finite without a pose.
 struct ExperimentPath {
-  std::vector<Vector3> reference_m, seed_m, glint_m;
+  std::vector<Vector3> reference_m, baseline_m, glint_m;
 };
 
 struct ExperimentResult {
   ExperimentKind kind = ExperimentKind::still;
   bool quick = false;
-  MethodFigures seed, glint;
+  MethodFigures baseline, glint;
   MethodFigures glint_held;  // with the built-in reference body in view
   MethodFigures perfect;     // ground-truth pose in the camera: error of the headset's drift alone
   ExperimentPath path;       // of the last run

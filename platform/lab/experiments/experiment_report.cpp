@@ -59,7 +59,7 @@ Json json_of(const MethodFigures& figures) {
 
 // Figures of one row; nullopt for a column without one.
 struct Row {
-  std::optional<double> published, seed, glint, held, perfect;
+  std::optional<double> published, baseline, glint, held, perfect;
 };
 
 std::string row(const char* name, const Row& figures, int decimals) {
@@ -67,7 +67,7 @@ std::string row(const char* name, const Row& figures, int decimals) {
   std::snprintf(line, sizeof line, "  %-34s", name);
   std::string text = line;
   for (const auto& figure :
-       {figures.published, figures.seed, figures.glint, figures.held, figures.perfect}) {
+       {figures.published, figures.baseline, figures.glint, figures.held, figures.perfect}) {
     if (figure) {
       std::snprintf(line, sizeof line, " %12.*f", decimals, *figure);
     } else {
@@ -100,7 +100,7 @@ std::string experiment_json(const ExperimentResult& result) {
   json["quick"] = result.quick;
   json["config_hash"] = result.config_hash;
   json["published"] = json_of(published_figures(result.kind));
-  json["seed"] = json_of(result.seed);
+  json["baseline"] = json_of(result.baseline);
   json["glint"] = json_of(result.glint);
   json["glint_held"] = json_of(result.glint_held);
   json["perfect_tracker"] = json_of(result.perfect);
@@ -114,7 +114,7 @@ std::string experiment_json(const ExperimentResult& result) {
 
 std::string experiment_table(const ExperimentResult& result) {
   const PublishedFigures published = published_figures(result.kind);
-  const MethodFigures &seed = result.seed, &glint = result.glint, &held = result.glint_held,
+  const MethodFigures &baseline = result.baseline, &glint = result.glint, &held = result.glint_held,
                       &perfect = result.perfect;
   const auto fit_sd = [](const ErrorColumn& column) {
     return column.fit.valid ? column.fit.sd : 0;
@@ -127,7 +127,7 @@ std::string experiment_table(const ExperimentResult& result) {
   text += heading;
   const auto block = [&](const char* unit, ErrorColumn MethodFigures::*column, double mean_abs,
                          const std::optional<double>& sd, const std::optional<double>& median) {
-    const ErrorColumn &s = seed.*column, &g = glint.*column, &h = held.*column,
+    const ErrorColumn &s = baseline.*column, &g = glint.*column, &h = held.*column,
                       &p = perfect.*column;
     const std::string of = std::string(" [") + unit + "]";
     const std::string what = unit == std::string("mm") ? "position " : "angle ";
@@ -150,18 +150,18 @@ std::string experiment_table(const ExperimentResult& result) {
   block("deg", &MethodFigures::angle_deg, published.angle_mean_abs_deg, published.angle_sd_deg,
         published.angle_median_deg);
   text += row("inside the 95 % ellipsoid",
-              {std::nullopt, seed.covered, glint.covered, held.covered, perfect.covered}, 3);
+              {std::nullopt, baseline.covered, glint.covered, held.covered, perfect.covered}, 3);
   text += row("frames a second",
-              {published.frames_per_s, seed.frames_per_s, glint.frames_per_s, held.frames_per_s,
+              {published.frames_per_s, baseline.frames_per_s, glint.frames_per_s, held.frames_per_s,
                std::nullopt},
               0);
   const auto count = [](int n) { return std::optional<double>(n); };
   text += row("samples",
-              {published.samples, count(seed.samples), count(glint.samples), count(held.samples),
-               count(perfect.samples)},
+              {published.samples, count(baseline.samples), count(glint.samples),
+               count(held.samples), count(perfect.samples)},
               0);
   text += row("frames",
-              {std::nullopt, count(seed.frames), count(glint.frames), count(held.frames),
+              {std::nullopt, count(baseline.frames), count(glint.frames), count(held.frames),
                count(perfect.frames)},
               0);
   const ExperimentBars bars = bars_of(result.kind);
@@ -191,15 +191,15 @@ std::vector<std::string> write_experiment_plots(const ExperimentResult& result,
   };
   write("position",
         histogram_plot({"Position error, " + name, "error along an axis [mm]", "part a mm"},
-                       std::vector{series_of("seed", result.seed.position_mm),
+                       std::vector{series_of("baseline", result.baseline.position_mm),
                                    series_of("Glint", result.glint.position_mm)}));
   write("angle",
         histogram_plot({"Angle error, " + name, "error about an axis [deg]", "part a degree"},
-                       std::vector{series_of("seed", result.seed.angle_deg),
+                       std::vector{series_of("baseline", result.baseline.angle_deg),
                                    series_of("Glint", result.glint.angle_deg)}));
   write("path", trajectory_plot("Tip, " + name + ", ten seconds",
                                 std::vector{beginning_of("reference", result.path.reference_m),
-                                            beginning_of("seed", result.path.seed_m),
+                                            beginning_of("baseline", result.path.baseline_m),
                                             beginning_of("Glint", result.path.glint_m)}));
   return written;
 }

@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// Returns {"experiment": .., "published": {..}, "seed": {..}, "glint": {..}, ..}; see README.md. A
-// figure that the publication does not state is null.
+// Returns {"experiment": .., "published": {..}, "baseline": {..}, "glint": {..}, ..}; see
+// README.md. A figure that the publication does not state is null.
 [[nodiscard]] std::string experiment_json(const ExperimentResult& result);
 
 // Returns published, baseline and Glint figures side by side, with their definitions below.

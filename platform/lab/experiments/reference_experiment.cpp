@@ -102,7 +102,7 @@ class Experiment {
     int near_best = 0, near_published = 0;
     std::vector<double> surface, share;
     for (int i = 0; i < seeds_; ++i) {
-      const Reference r = find_reference(frames, seed(0.1, 10, i), {});
+      const Reference r = find_reference(frames, initial_pose(0.1, 10, i), {});
       tally.add(r, scan_.published);
       near_best += pose_distance(r.found.alignment.T_world_base, best).within(5, 0.5) ? 1 : 0;
       near_published +=
@@ -121,7 +121,7 @@ class Experiment {
   void far(const std::string& name, const std::vector<SceneFrame>& frames) {
     ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i)
-      tally.add(find_reference(frames, seed(0.4, 40, i), {}), scan_.published);
+      tally.add(find_reference(frames, initial_pose(0.4, 40, i), {}), scan_.published);
     add(name, seeds_, tally.verdicts());
   }
 
@@ -152,7 +152,7 @@ class Experiment {
     int accepted = 0;
     for (int i = 0; i < seeds_; ++i) {
       const double wide = i % 2 == 0 ? 1 : 4;
-      const Reference r = find_reference(frames, seed(0.1 * wide, 10 * wide, i), {});
+      const Reference r = find_reference(frames, initial_pose(0.1 * wide, 10 * wide, i), {});
       accepted += r.verdict == ReferenceVerdict::accepted ? 1 : 0;
     }
     add("robot cut out", seeds_,
@@ -165,7 +165,7 @@ class Experiment {
     int near_best = 0;
     ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i) {
-      const Reference r = find_reference(one, seed(0.1, 10, i), {});
+      const Reference r = find_reference(one, initial_pose(0.1, 10, i), {});
       near_best += pose_distance(r.found.alignment.T_world_base, best).within(10, 1) ? 1 : 0;
       tally.add(r, scan_.published);
     }
@@ -240,7 +240,7 @@ class Experiment {
         count, std::move(figures));
   }
 
-  [[nodiscard]] Pose seed(double shift_m, double degrees, int number) const {
+  [[nodiscard]] Pose initial_pose(double shift_m, double degrees, int number) const {
     return initial_pose_near(scan_.published, shift_m, degrees, options_.seed,
                              static_cast<std::uint64_t>(number));
   }

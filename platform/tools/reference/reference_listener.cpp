@@ -22,7 +22,7 @@ std::string source_of(const std::string& topic) {
            "or --joints FILE";
   }
   return "expected RViz's \"2D Pose Estimate\" or `ros2 topic pub --once /initialpose "
-         "geometry_msgs/msg/PoseWithCovarianceStamped ...`, or --seed x,y,z,roll,pitch,yaw";
+         "geometry_msgs/msg/PoseWithCovarianceStamped ...`, or --initial-pose x,y,z,roll,pitch,yaw";
 }
 
 }  // namespace

@@ -11,12 +11,12 @@ namespace {
 TEST(BoardJson, SaysWhatWasHeardOverCan) {
   CompanionResult result;
   result.can_received = {3, 2};
-  const auto heard = as_json(result).at("can_heard");
+  const auto heard = as_json(result).at("can_input");
   EXPECT_EQ(heard.at("buttons"), 3);
   EXPECT_EQ(heard.at("refused"), 2);
   EXPECT_EQ(heard.at("why_not"), "");
   result.can_receive_error = "can.buttons: no bus";
-  EXPECT_EQ(as_json(result).at("can_heard").at("why_not"), "can.buttons: no bus");
+  EXPECT_EQ(as_json(result).at("can_input").at("why_not"), "can.buttons: no bus");
 }
 
 TEST(BoardJson, SaysByWhichJointsTheRobotWasFollowed) {

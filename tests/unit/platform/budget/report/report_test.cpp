@@ -141,6 +141,15 @@ TEST_F(BudgetReport, CountsEveryCallOnceInANodesTimes) {
   EXPECT_EQ(nodes.rows[6][8].text, "0");
 }
 
+// Older measurements name the load "enemy".
+TEST_F(BudgetReport, NamesTheLoadOfEachInterference) {
+  const Document document = report({});
+  std::vector<std::string> loads;
+  for (const auto& row : table(section(document, "interference")).rows)
+    loads.push_back(row[1].text);
+  EXPECT_EQ(loads, (std::vector<std::string>{"cache", "bandwidth", "other_core"}));
+}
+
 TEST_F(BudgetReport, SaysNoneWhereTheAnalysisFoundNoBound) {
   write_samples(folder_.string(), {.frames = 50});
   std::ifstream in(path("check.json"));

@@ -109,8 +109,9 @@ TEST(Experiment, GivesBothMethodsTheSameFramesAndTheSameFiguresAgain) {
   const ExperimentResult a = run_experiment(ExperimentKind::moving, {short_run()}, options);
   const ExperimentResult b = run_experiment(ExperimentKind::moving, {short_run()}, {});
   EXPECT_EQ(progress.back(), 24);
-  for (const auto& [first, second] : {std::pair(&a.seed, &b.seed), std::pair(&a.glint, &b.glint),
-                                      std::pair(&a.glint_held, &b.glint_held)}) {
+  for (const auto& [first, second] :
+       {std::pair(&a.baseline, &b.baseline), std::pair(&a.glint, &b.glint),
+        std::pair(&a.glint_held, &b.glint_held)}) {
     EXPECT_EQ(first->frames, 12);
     EXPECT_GE(first->samples, 10);
     EXPECT_LT(first->position_mm.norm_mean, 100);  // the tool was tracked, whatever the drift
@@ -134,10 +135,10 @@ TEST(Experiment, WritesPublishedSeedAndGlintSideBySide) {
   ExperimentResult result;
   result.declared = declared_parameters({short_run()});
   const std::vector<double> errors = {-1, 2, 3}, lengths = {4};
-  result.seed.position_mm = make_error_column(errors, lengths);
-  result.seed.samples = 5000;
+  result.baseline.position_mm = make_error_column(errors, lengths);
+  result.baseline.samples = 5000;
   const auto json = nlohmann::json::parse(experiment_json(result));
-  for (const char* row : {"published", "seed", "glint"}) {
+  for (const char* row : {"published", "baseline", "glint"}) {
     for (const char* key : {"position_mean_abs_mm", "angle_mean_abs_deg", "position_sd_mm",
                             "angle_sd_deg", "frames_per_s", "samples"}) {
       EXPECT_TRUE(json.at(row).contains(key)) << row << ' ' << key;
@@ -145,8 +146,8 @@ TEST(Experiment, WritesPublishedSeedAndGlintSideBySide) {
   }
   EXPECT_EQ(json["published"]["position_mean_abs_mm"], 1.9);
   EXPECT_TRUE(json["published"]["position_sd_mm"].is_null());  // not published (static)
-  EXPECT_EQ(json["seed"]["position_mean_abs_mm"], 2.0);
-  EXPECT_EQ(json["seed"]["position_mm"]["norm_mean"], 4.0);
+  EXPECT_EQ(json["baseline"]["position_mean_abs_mm"], 2.0);
+  EXPECT_EQ(json["baseline"]["position_mm"]["norm_mean"], 4.0);
   result.kind = ExperimentKind::moving;
   const std::string table = experiment_table(result);
   for (const char* words :

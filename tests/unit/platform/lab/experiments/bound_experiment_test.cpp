@@ -108,7 +108,7 @@ TEST(BoundExperiment, HoldsOnlyGlintToBarsAndNoneInAQuickRun) {
     if (c.method != "svd") continue;
     EXPECT_GT(figure_of(c, "rotation_above_bound").value, 0.9);
   }
-  EXPECT_EQ(methods, (std::set<std::string>{"glint", "svd", "seed"}));
+  EXPECT_EQ(methods, (std::set<std::string>{"glint", "svd", "baseline"}));
 }
 
 TEST(BoundExperiment, GivesTheSameFiguresAgain) {

@@ -75,7 +75,7 @@ TEST_F(ReferenceListening, SaysWhatWasNotHeardAndWhoPublishesIt) {
         (void)listener.description();
       },
       {"0.3 s on lo, domain 0", "rt/robot_description: no message", "robot_state_publisher",
-       "--urdf", "rt/initialpose: no message", "2D Pose Estimate", "--seed"});
+       "--urdf", "rt/initialpose: no message", "2D Pose Estimate", "--initial-pose"});
   expect_input_error(
       [&] {
         ReferenceListener listener(test_settings(), {false, true, false}, little, {});

@@ -14,13 +14,13 @@ namespace glint {
 
 inline constexpr int k_measured_core = 0;
 
-class Enemy {
+class InterferenceLoad {
  public:
   // "none" starts no thread. On a single-core machine, all workloads share the core.
-  explicit Enemy(const std::string& name);
-  ~Enemy();
-  Enemy(const Enemy&) = delete;
-  Enemy& operator=(const Enemy&) = delete;
+  explicit InterferenceLoad(const std::string& name);
+  ~InterferenceLoad();
+  InterferenceLoad(const InterferenceLoad&) = delete;
+  InterferenceLoad& operator=(const InterferenceLoad&) = delete;
 
  private:
   std::atomic<bool> stop_{false};

@@ -1,4 +1,4 @@
-#include "platform/budget/measure/enemies.hpp"
+#include "platform/budget/measure/interference_load.hpp"
 
 #include <sched.h>
 #include <time.h>
@@ -52,7 +52,7 @@ void stay_on_core(int core) {
   (void)sched_setaffinity(0, sizeof cores, &cores);  // if refused, the measurement is noisier
 }
 
-Enemy::Enemy(const std::string& name) {
+InterferenceLoad::InterferenceLoad(const std::string& name) {
   if (name == "none") return;
   thread_ = std::thread([this, name] {
     const bool same = name == "interrupts" || std::thread::hardware_concurrency() < 2;
@@ -64,7 +64,7 @@ Enemy::Enemy(const std::string& name) {
   });
 }
 
-Enemy::~Enemy() {
+InterferenceLoad::~InterferenceLoad() {
   stop_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) thread_.join();
 }
