@@ -1,6 +1,7 @@
 #include "platform/cells/cell.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 
 #include "glint_default_cell.hpp"
@@ -252,6 +253,13 @@ Cell cell_from_text(const std::string& text, const std::string& file,
   }
   root.done();
   return cell;
+}
+
+Vector3 fixed_axes_deg(const Quaternion& rotation) {
+  const Matrix3 r = rotation.toRotationMatrix();
+  const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
+  return k_degrees_per_radian *
+         Vector3(std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0)));
 }
 
 Limits limits_of(const Cell& cell) {

@@ -185,6 +185,9 @@ struct SourceLens {
   std::string file;         // or empty
 };
 
+// Rotations about the fixed axes x, y and z in degrees, as [robot] rotation_deg states them.
+[[nodiscard]] Vector3 fixed_axes_deg(const Quaternion& rotation);
+
 // Returns whether the cell names a lens, by file or ray table.
 [[nodiscard]] bool names_lens(const Cell& cell);
 // Sets the lens of the source's frames; a recording of the run contains it. Throws InputError if

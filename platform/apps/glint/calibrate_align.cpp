@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "platform/apps/glint/calibrate_commands.hpp"
+#include "platform/cells/cell.hpp"
 #include "platform/in_range.hpp"
 #include "platform/tools/calibrate/align.hpp"
 #include "platform/tools/calibrate/figure_text.hpp"
@@ -18,15 +19,8 @@ struct AlignArguments {
   CalibrationOutput output;
 };
 
-// Order x, y, z, w. fixed_axes_deg: rotations about fixed axes, as a cell states a robot's base.
+// Order x, y, z, w.
 Figures quaternion_figures(const Quaternion& q) { return {q.x(), q.y(), q.z(), q.w()}; }
-
-Vector3 fixed_axes_deg(const Quaternion& q) {
-  const Matrix3 r = q.toRotationMatrix();
-  const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
-  return k_degrees_per_radian *
-         Vector3(std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0)));
-}
 
 Figures pose_figures(const Pose& pose) {
   return {{"position_mm", figures_of(pose.translation, 1e3)},

@@ -1,4 +1,4 @@
-// glint reference: pose of a robot, from depth images of it and a rough pose.
+// glint reference: pose of a robot, from depth images of it and a rough pose, or from touches.
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,6 +8,7 @@
 #include "platform/apps/glint/publishing.hpp"
 #include "platform/apps/glint/reference_inputs.hpp"
 #include "platform/apps/glint/reference_report.hpp"
+#include "platform/apps/glint/reference_touch.hpp"
 #include "platform/in_range.hpp"
 #include "platform/tools/robot/sample_robot.hpp"
 
@@ -23,6 +24,7 @@ void export_model(const ReferenceArguments& arguments, const RobotModel& robot) 
 }
 
 int run_reference(ReferenceArguments arguments) {
+  if (!arguments.touch.points.empty()) return run_touch(arguments.touch, arguments.json);
   require_inputs(arguments);
   std::unique_ptr<ReferenceListener> listener = listener_of(arguments);
   const AnyRobot robot = robot_of(arguments, listener.get());
@@ -49,7 +51,8 @@ int run_reference(ReferenceArguments arguments) {
 }  // namespace
 
 void add_reference(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("reference", "Find the robot's base in depth images");
+  CLI::App* command = app.add_subcommand(
+      "reference", "Find the robot's base in depth images, or by touches of the pen");
   auto arguments = std::make_shared<ReferenceArguments>();
   RobotFiles& robot = arguments->robot;
   SceneFiles& scene = arguments->scene;
@@ -60,6 +63,7 @@ void add_reference(CLI::App& app, int& exit_code) {
       "    --depth a.npy b.npy --joints a.txt b.txt --initial-pose 0.4,0.2,1.2,-1.6,0.1,0.8 --json "
       "r.json\n"
       "  glint reference --listen 60 --package-dir meshes --camera camera_info.yaml --depth a.npy\n"
+      "  glint reference --touch points.toml --tips out/run.mcap\n"
       "Exit: 0 accepted, 1 ambiguous or refused, 2 bad use or input, 3 no such interface.");
   auto* const urdf = command->add_option("--urdf", robot.urdf, "URDF file of the robot");
   command
@@ -101,6 +105,7 @@ void add_reference(CLI::App& app, int& exit_code) {
       "PLY file of joints and surface points; a board reads it instead of URDF and meshes");
   command->add_option("--points", arguments->points, "number of points of --export-model")
       ->capture_default_str();
+  add_touch_options(*command, arguments->touch);
   command->add_flag("--visual", arguments->visual, "visual meshes instead of collision meshes");
   command->add_option("--json", arguments->json, "file of the figures");
   command->callback([arguments, &exit_code] { exit_code = run_reference(*arguments); });

@@ -11,6 +11,11 @@
 
 namespace glint {
 
+struct TouchArguments {
+  std::string points, tips, button, tool;
+  double sigma_mm = 1;
+};
+
 // Robot, joints and initial pose come from files and options, or are received over DDS.
 struct ReferenceArguments {
   RobotFiles robot;
@@ -23,6 +28,7 @@ struct ReferenceArguments {
   double depth_bias_mm = 1e3 * SystematicErrors{}.depth_sigma_m;
   double listen_s = 0;
   DdsSettings network;
+  TouchArguments touch;  // --touch: the points that replace images and initial pose
 
   [[nodiscard]] bool has_robot() const { return !robot.urdf.empty() || !model.empty(); }
   [[nodiscard]] bool only_exports() const {
