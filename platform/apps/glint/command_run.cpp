@@ -28,6 +28,7 @@
 #include "platform/input_error.hpp"
 #include "platform/runtime/session/node_probe.hpp"
 #include "platform/runtime/session/simulated_run.hpp"
+#include "platform/sinks/view/foxglove_server.hpp"
 #include "platform/sources/open_live_source.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/stop_signals.hpp"
@@ -49,6 +50,8 @@ struct RunArguments {
   std::vector<std::string> inject;
   bool trace = false;
   bool keys = false;
+  bool views = false;
+  FoxgloveSettings view;
   double source_frame_ms = 0;
   bool recorded = false;  // glint track
   std::string source, kind;
@@ -84,6 +87,29 @@ void open_key_terminal(const RunArguments& arguments, const Cell& cell,
   std::fflush(stdout);
 }
 
+// The live view of a run's recorded messages; null without --view.
+std::unique_ptr<FoxgloveServer> open_view(const RunArguments& arguments, const Cell& cell) {
+  if (!arguments.views) return nullptr;
+  if (cell.record.file.empty()) {
+    throw InputError(cell.file +
+                     ": --view shows the messages of the run's recording; expected "
+                     "record.file");
+  }
+  auto server = std::make_unique<FoxgloveServer>(arguments.view);
+  std::printf("view       ws://%s:%d, protocol foxglove.websocket.v1\n",
+              arguments.view.address.c_str(), server->port());
+  std::fflush(stdout);
+  return server;
+}
+
+nlohmann::ordered_json view_json(const FoxgloveCounts& counts) {
+  return {{"clients", counts.clients},
+          {"refused", counts.refused},
+          {"invalid", counts.invalid},
+          {"messages", counts.messages},
+          {"dropped", counts.dropped}};
+}
+
 // A write that fails, as on a full disk, loses only its own file.
 bool written(const std::function<void()>& write, SessionResult& result) {
   try {
@@ -97,10 +123,21 @@ bool written(const std::function<void()>& write, SessionResult& result) {
 
 // Writes the figures first, the plots last.
 int report(const Cell& cell, const SessionOptions& options, const std::string& json_file,
-           SessionResult& result) {
-  const auto write_summary = [&] { write_json(json_file, summary_of(cell, options.plan, result)); };
+           const FoxgloveServer* view, SessionResult& result) {
+  const auto write_summary = [&] {
+    nlohmann::ordered_json summary = summary_of(cell, options.plan, result);
+    if (view != nullptr) summary["view"] = view_json(view->counts());
+    write_json(json_file, summary);
+  };
   (void)written(write_summary, result);
   print_table(summary_of(cell, options.plan, result), result);
+  if (view != nullptr) {
+    const FoxgloveCounts counts = view->counts();
+    std::printf("view       %llu clients, %llu messages sent, %llu dropped\n",
+                static_cast<unsigned long long>(counts.clients),
+                static_cast<unsigned long long>(counts.messages),
+                static_cast<unsigned long long>(counts.dropped));
+  }
   const std::size_t printed = result.files.size();
   const bool plotted = written([&] { draw_plots(options.out, result); }, result);
   print_files(result, printed);
@@ -133,6 +170,8 @@ int run(const RunArguments& arguments) {
   make_folder_of(arguments.json);
   ReservedDiskSpace room(arguments.json);
   const FolderLock lock(arguments.out);
+  const std::unique_ptr<FoxgloveServer> view = open_view(arguments, cell);
+  options.observer = view.get();
   Progress progress("tracking");
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
@@ -145,7 +184,8 @@ int run(const RunArguments& arguments) {
   SessionResult result = run_source(cell, source.get(), options, frame_time);
   progress.clear();
   room.release();
-  return report(cell, options, arguments.json, result);
+  if (view != nullptr) view->close();
+  return report(cell, options, arguments.json, view.get(), result);
 }
 
 // Adds the options of both commands.
@@ -162,6 +202,14 @@ void add_common(CLI::App& command, RunArguments& arguments) {
   command.add_option("--record-level", arguments.level, "full, roi, blobs or outputs");
   command.add_option("--workers", arguments.workers, "threads of the frame group: 1 or 2")
       ->check(in_range(1, 2));
+  auto* const view = command.add_option("--view", arguments.view.port,
+                                        "live view for Foxglove: WebSocket port, default 8765");
+  view->expected(0, 1)->check(in_range(0, 65535));
+  command.parse_complete_callback([&arguments, view] { arguments.views = view->count() > 0; });
+  command
+      .add_option("--view-address", arguments.view.address,
+                  "address that the view listens on; default: this machine only")
+      ->needs(view);
   command
       .add_option("--method", arguments.method, "glint or baseline (Puljiz et al.; formerly seed)")
       ->check(CLI::IsMember({"glint", "baseline", "seed"}));

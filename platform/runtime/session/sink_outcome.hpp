@@ -12,6 +12,7 @@
 #include "platform/sinks/dds/dds_inputs.hpp"
 #include "platform/sinks/dds/dds_sink.hpp"
 #include "platform/sinks/dds/reader_result.hpp"
+#include "platform/sinks/record/message_observer.hpp"
 #include "platform/sinks/record/recording.hpp"
 
 namespace glint {
@@ -21,6 +22,7 @@ struct SinkOptions {
   bool with_reader = true;                 // a separate DDS reader process counts received samples
   std::vector<std::string> timing_faults;  // this machine's timing faults, stated in all outputs
   bool by_rate = true;                     // statistics by frame rate
+  MessageObserver* observer = nullptr;     // of the recorded messages
   GroundTruthOfTool truth{};               // of run_session()'s source, for `by_rate`
 };
 

@@ -87,6 +87,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     info.attachments = attachments_of(cell);
     RecorderSettings settings;
     settings.when_full = can.when_full;
+    settings.file.observer = options.observer;
     recorder_ = std::make_unique<Recorder>(recording_file_, info, settings);
   }
 

@@ -45,15 +45,19 @@ struct RecordingWriter::Body {
   Body(const std::string& path, const RecordingInfo& info, const RecordingSettings& settings);
 
   std::uint16_t channel(std::string_view topic, std::string_view type) {
+    const std::string schema = schema_text(type);
     // rosbag2 requires the key; an empty value means the default quality of service.
-    return mcap.add_channel(std::string(topic), std::string(type), schema_text(type),
-                            {{"offered_qos_profiles", ""}});
+    const std::uint16_t number = mcap.add_channel(std::string(topic), std::string(type), schema,
+                                                  {{"offered_qos_profiles", ""}});
+    if (observer != nullptr) observer->add_channel(number, topic, type, schema);
+    return number;
   }
   // Writes the message in `cdr`, at that monotonic time.
   void write(std::uint16_t to, Time time) {
     const auto log_time =
         static_cast<std::uint64_t>(std::max<std::int64_t>(0, (time + unix_offset).nanoseconds));
     mcap.write({to, static_cast<std::uint32_t>(sequence++), log_time, log_time}, cdr.bytes());
+    if (observer != nullptr) observer->add_message(to, log_time, cdr.bytes());
     ++offered;
     note_failure();
   }
@@ -71,6 +75,7 @@ struct RecordingWriter::Body {
   Duration unix_offset;
   std::vector<std::string> tool_names;
   McapWriter mcap;
+  MessageObserver* observer;
   CdrWriter cdr;
   std::uint64_t sequence = 0;
   std::uint64_t offered = 0;  // messages, written or not
@@ -90,7 +95,8 @@ RecordingWriter::Body::Body(const std::string& file, const RecordingInfo& info,
       level(info.level),
       unix_offset(info.unix_offset),
       tool_names(info.tool_names),
-      mcap(file, "ros2", "glint", mcap_settings(settings)) {
+      mcap(file, "ros2", "glint", mcap_settings(settings)),
+      observer(settings.observer) {
   if (records_frames(level)) frame = channel(k_frame_topic, "glint_msgs/msg/FramePatch");
   if (level == RecordingLevel::full) {
     reflectivity = channel(k_reflectivity_topic, "sensor_msgs/msg/Image");

@@ -12,6 +12,7 @@
 
 #include "kernels/wire/pose_sample.hpp"
 #include "platform/sinks/record/frame_patch.hpp"
+#include "platform/sinks/record/message_observer.hpp"
 #include "platform/sinks/record/recording.hpp"
 
 namespace glint {
@@ -20,6 +21,7 @@ struct RecordingSettings {
   std::size_t chunk_bytes = std::size_t{4} << 20;  // a chunk ends at this size ...
   Duration chunk_span = milliseconds(1000);        // ... or this span: the loss in a crash
   Duration sync_period = milliseconds(1000);       // additional loss in a power failure
+  MessageObserver* observer = nullptr;             // of every message; outlives the writer
 };
 
 class RecordingWriter {
