@@ -1,7 +1,9 @@
-// glint path: path drawn with the pen while its button was held, as a table and a robot program.
+// glint path: path drawn with the pen while its button was held, as a table and a robot program in
+// a controller's language.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,18 +16,17 @@
 #include "platform/apps/glint/publishing.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
-#include "platform/tools/programming/path_csv.hpp"
 #include "platform/tools/programming/press_times.hpp"
+#include "platform/tools/programming/program_format.hpp"
 #include "platform/tools/programming/recorded_path.hpp"
-#include "platform/tools/programming/ur_script.hpp"
 
 namespace glint {
 namespace {
 
 struct PathArguments {
-  std::string recording, button, csv, urscript, json;
+  std::string recording, button, csv, urscript, program, format, name, json;
   RecordedPathOptions options;
-  UrScriptSettings script;
+  ProgramSettings settings;
   PublishOptions publish;
 };
 
@@ -108,20 +109,39 @@ void publish(const RecordedPath& drawn, const PublishOptions& options) {
   keep_publishing(publisher, options);
 }
 
+struct PathFile {
+  std::string name;
+  ProgramFormat format;
+};
+
+std::vector<PathFile> requested_files(const PathArguments& arguments) {
+  std::vector<PathFile> files;
+  if (!arguments.csv.empty()) files.push_back({arguments.csv, ProgramFormat::csv});
+  if (!arguments.urscript.empty()) files.push_back({arguments.urscript, ProgramFormat::urscript});
+  if (!arguments.program.empty()) {
+    files.push_back({arguments.program, program_format(arguments.format, arguments.program)});
+  }
+  return files;
+}
+
 int make_path(PathArguments& arguments) {
   if (!arguments.button.empty()) arguments.options.presses = press_times(arguments.button);
+  const std::vector<PathFile> files = requested_files(arguments);
   const RecordedPath drawn = recorded_path(arguments.recording, arguments.options);
-  // Makes both texts before either file: a rejected path leaves no file.
-  const std::string csv = path_csv(drawn.path);
-  const std::string script = ur_script(drawn.path, arguments.script);
+  arguments.settings.recording =
+      std::filesystem::path(arguments.recording).filename().string() + ", tool " + drawn.tool;
+  // Makes all texts before the first file: a rejected path leaves no file.
+  std::vector<std::string> texts;
+  for (const PathFile& file : files) {
+    ProgramSettings settings = arguments.settings;
+    settings.name = arguments.name.empty() ? program_name(file.name) : arguments.name;
+    texts.push_back(path_text(drawn.path, settings, file.format));
+  }
   print_table(drawn, arguments.options.capture.stroke.spacing_m);
-  const auto write = [](const std::string& file, const std::string& text) {
-    if (file.empty()) return;
-    write_text(file, text);
-    std::printf("written  %s\n", file.c_str());
-  };
-  write(arguments.csv, csv);
-  write(arguments.urscript, script);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    write_text(files[i].name, texts[i]);
+    std::printf("written  %s\n", files[i].name.c_str());
+  }
   write_json(arguments.json, figures(drawn));
   publish(drawn, arguments.publish);
   return drawn.losses.any() ? 1 : 0;
@@ -146,6 +166,7 @@ void add_path(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  glint path out/run.mcap --csv path.csv --urscript path.script\n"
+      "  glint path out/run.mcap --program weld.src --user-frame 2 --tool-frame 1\n"
       "  glint path out/run.mcap --button 1.0..2.5,3.0..4.2 --spacing 2mm --csv path.csv\n"
       "A held button draws a stroke, a click sets a waypoint. Reachability is not checked.\n"
       "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
@@ -162,18 +183,36 @@ void add_path(CLI::App& app, int& exit_code) {
       ->check(in_range(1, 1 << 22))
       ->capture_default_str();
   command->add_option("--csv", arguments->csv, "CSV file of the points and their covariances");
-  command->add_option("--urscript", arguments->urscript, "file of the robot program");
-  UrScriptSettings& script = arguments->script;
-  command->add_option("--stroke-speed", script.stroke_m_s, "speed along strokes, m/s")
+  command->add_option("--urscript", arguments->urscript, "file of the program in URScript");
+  CLI::Option* program = command->add_option(
+      "--program", arguments->program,
+      "file of the program; its suffix selects the language: .script (URScript), .src (KUKA KRL), "
+      ".mod (ABB RAPID), .ls (FANUC); .csv: the table");
+  command->add_option("--format", arguments->format, "language of --program")
+      ->check(CLI::IsMember({"urscript", "krl", "rapid", "ls", "csv"}))
+      ->needs(program);
+  command->add_option("--name", arguments->name, "name of the program; default: the file's name");
+  ProgramSettings& settings = arguments->settings;
+  command
+      ->add_option("--user-frame", settings.user_frame,
+                   "the controller's number of the robot's frame (KRL, RAPID, LS); 0: its base")
+      ->check(in_range(0, 99))
+      ->capture_default_str();
+  command
+      ->add_option("--tool-frame", settings.tool_frame,
+                   "the controller's number of the tip's frame (KRL, RAPID, LS)")
+      ->check(in_range(0, 99))
+      ->capture_default_str();
+  command->add_option("--stroke-speed", settings.stroke_m_s, "speed along strokes, m/s")
       ->check(in_range(1e-3, 2.0))
       ->capture_default_str();
-  command->add_option("--travel-speed", script.travel_m_s, "speed to waypoints and strokes, m/s")
+  command->add_option("--travel-speed", settings.travel_m_s, "speed to waypoints and strokes, m/s")
       ->check(in_range(1e-3, 2.0))
       ->capture_default_str();
-  command->add_option("--acceleration", script.acceleration_m_s2, "m/s^2")
+  command->add_option("--acceleration", settings.acceleration_m_s2, "m/s^2")
       ->check(in_range(1e-2, 10.0))
       ->capture_default_str();
-  add_length(command, "--blend", script.blend_m, "largest blend radius", 0, 0.1);
+  add_length(command, "--blend", settings.blend_m, "largest blend radius", 0, 0.1);
   add_publish_options(*command, arguments->publish);
   command->add_flag("--allow-truncated", arguments->options.tolerance.truncated,
                     "read the undamaged records of a truncated or damaged file, count the missing "

@@ -45,6 +45,10 @@ std::vector<UncertainPose> points_of(const DrawnPath& path) {
   return points;
 }
 
+std::string script_of(const DrawnPath& path, const ProgramSettings& settings) {
+  return ur_script(robot_program(path, settings));
+}
+
 struct Move {
   std::string name;
   Pose pose;
@@ -88,7 +92,7 @@ double way(const Move& a, const Move& b) {
 TEST(UrScript, IsParsedBackToTheSamePoints) {
   const DrawnPath path = sample_path();
   ASSERT_EQ(path.size(), 5u);
-  const std::string script = ur_script(path, {});
+  const std::string script = script_of(path, {});
   EXPECT_NE(script.find("# NOT CHECKED"), std::string::npos);
   EXPECT_EQ(script.rfind("# ", 0), 0u);
   const auto moves = moves_in(script);
@@ -103,8 +107,8 @@ TEST(UrScript, IsParsedBackToTheSamePoints) {
 
 TEST(UrScript, DrivesToWaypointsAndStrokesAndAlongStrokes) {
   const DrawnPath path = sample_path();
-  const UrScriptSettings settings{.travel_m_s = 0.3, .stroke_m_s = 0.02, .acceleration_m_s2 = 0.7};
-  const auto moves = moves_in(ur_script(path, settings));
+  const ProgramSettings settings{.travel_m_s = 0.3, .stroke_m_s = 0.02, .acceleration_m_s2 = 0.7};
+  const auto moves = moves_in(script_of(path, settings));
   std::size_t i = 0;
   for (const PathElement& element : path) {
     for (std::size_t k = 0; k < element.points.size(); ++k, ++i) {
@@ -118,9 +122,9 @@ TEST(UrScript, DrivesToWaypointsAndStrokesAndAlongStrokes) {
 
 TEST(UrScript, KeepsBlendsApartAndStopsAtTheEndsOfStrokesAndOfTheProgram) {
   for (const double most : {0.0, 0.0004, 0.005, 0.1}) {
-    UrScriptSettings settings;
+    ProgramSettings settings;
     settings.blend_m = most;
-    const auto moves = moves_in(ur_script(sample_path(), settings));
+    const auto moves = moves_in(script_of(sample_path(), settings));
     ASSERT_GT(moves.size(), 3u);
     EXPECT_EQ(moves.back().blend, 0);
     double largest = 0;
@@ -146,20 +150,20 @@ TEST(UrScript, HasNoBlendWhereThereIsNoWay) {
     path.push_back(
         {PathKind::waypoint, {{Time{}, {Quaternion::Identity(), {x, 0, 0}}, Matrix6::Zero()}}});
   }
-  for (const Move& move : moves_in(ur_script(path, {}))) EXPECT_EQ(move.blend, 0);
+  for (const Move& move : moves_in(script_of(path, {}))) EXPECT_EQ(move.blend, 0);
 }
 
 TEST(UrScript, RefusesSettingsThatNoRobotCanRun) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const UrScriptSettings& wrong : std::vector<UrScriptSettings>{{.travel_m_s = 0},
-                                                                     {.stroke_m_s = -1},
-                                                                     {.acceleration_m_s2 = nan},
-                                                                     {.blend_m = -1e-9},
-                                                                     {.name = ""},
-                                                                     {.name = "1st"},
-                                                                     {.name = "a b"},
-                                                                     {.name = "x():\nhalt"}}) {
-    EXPECT_THROW((void)ur_script(sample_path(), wrong), InputError);
+  for (const ProgramSettings& wrong : std::vector<ProgramSettings>{{.travel_m_s = 0},
+                                                                   {.stroke_m_s = -1},
+                                                                   {.acceleration_m_s2 = nan},
+                                                                   {.blend_m = -1e-9},
+                                                                   {.name = ""},
+                                                                   {.name = "1st"},
+                                                                   {.name = "a b"},
+                                                                   {.name = "x():\nhalt"}}) {
+    EXPECT_THROW((void)script_of(sample_path(), wrong), InputError);
   }
 }
 

@@ -1,0 +1,69 @@
+#include "platform/tools/programming/program_format.hpp"
+
+#include <filesystem>
+
+#include "platform/input_error.hpp"
+#include "platform/printable.hpp"
+#include "platform/tools/programming/fanuc_ls.hpp"
+#include "platform/tools/programming/krl.hpp"
+#include "platform/tools/programming/path_csv.hpp"
+#include "platform/tools/programming/program_text.hpp"
+#include "platform/tools/programming/rapid.hpp"
+#include "platform/tools/programming/ur_script.hpp"
+
+namespace glint {
+namespace {
+
+struct Entry {
+  ProgramFormat format;
+  const char* name;
+  const char* suffix;  // upper case
+};
+
+constexpr Entry k_formats[] = {{ProgramFormat::urscript, "urscript", ".SCRIPT"},
+                               {ProgramFormat::krl, "krl", ".SRC"},
+                               {ProgramFormat::rapid, "rapid", ".MOD"},
+                               {ProgramFormat::ls, "ls", ".LS"},
+                               {ProgramFormat::csv, "csv", ".CSV"}};
+
+}  // namespace
+
+ProgramFormat program_format(const std::string& name, const std::string& file) {
+  const std::string suffix = upper_case(std::filesystem::path(file).extension().string());
+  for (const Entry& entry : k_formats) {
+    if (name.empty() ? suffix == entry.suffix : name == entry.name) return entry.format;
+  }
+  if (!name.empty()) {
+    throw InputError("--format: found \"" + printable(name) +
+                     "\"; expected urscript, krl, rapid, ls or csv");
+  }
+  throw InputError(printable(file) +
+                   ": unknown suffix; expected .script, .src, .mod, .ls or .csv, or --format");
+}
+
+std::string program_name(const std::string& file) {
+  std::string name = std::filesystem::path(file).stem().string();
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  for (char& c : name) {
+    if (!letter(c) && !(c >= '0' && c <= '9')) c = '_';
+  }
+  return !name.empty() && letter(name.front()) ? name : "p_" + name;
+}
+
+std::string path_text(const DrawnPath& path, const ProgramSettings& settings,
+                      ProgramFormat format) {
+  if (format == ProgramFormat::csv) return path_csv(path);
+  const RobotProgram program = robot_program(path, settings);
+  switch (format) {
+    case ProgramFormat::krl:
+      return krl(program);
+    case ProgramFormat::rapid:
+      return rapid(program);
+    case ProgramFormat::ls:
+      return fanuc_ls(program);
+    default:
+      return ur_script(program);
+  }
+}
+
+}  // namespace glint

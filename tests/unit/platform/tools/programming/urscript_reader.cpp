@@ -1,0 +1,73 @@
+// URScript. Syntax: Universal Robots, The URScript Programming Language: def NAME(): .. end,
+// comments from '#' to the line's end, movel and movep with pose p[x,y,z,rx,ry,rz] (m, rotation
+// vector), a [m/s^2], v [m/s], r [m].
+#include "tests/unit/platform/tools/programming/program_reader.hpp"
+
+namespace glint::test {
+namespace urscript_reader {
+
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn) {
+  const double angle = turn.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d axis = turn / angle;
+  Eigen::Matrix3d k;
+  k << 0, -axis[2], axis[1], axis[2], 0, -axis[0], -axis[1], axis[0], 0;
+  return Eigen::Matrix3d::Identity() + std::sin(angle) * k + (1 - std::cos(angle)) * (k * k);
+}
+
+double argument(Scanner& in, std::string_view name) {
+  in.expect(",");
+  in.expect(name);
+  in.expect("=");
+  return in.number();
+}
+
+ReadMove move(Scanner& in, ReadProgram& program) {
+  ReadMove read;
+  double value[6] = {};
+  for (const char* token : {"(", "p", "["}) in.expect(token);
+  for (int i = 0; i < 6; ++i) {
+    if (i > 0) in.expect(",");
+    value[i] = in.number();
+  }
+  in.expect("]");
+  read.position_m = {value[0], value[1], value[2]};
+  read.rotation = rotation_by({value[3], value[4], value[5]});
+  program.acceleration_m_s2 = argument(in, "a");
+  read.speed_m_s = argument(in, "v");
+  read.blend_m = argument(in, "r");
+  in.expect(")");
+  return read;
+}
+
+}  // namespace urscript_reader
+
+ReadProgram read_urscript(const std::string& text) {
+  Scanner in(text, true);
+  ReadProgram program;
+  const auto comment = [&] {
+    if (!in.accept("#")) return false;
+    program.comments.push_back(in.rest());
+    in.expect("\n");
+    return true;
+  };
+  while (comment()) {
+  }
+  in.expect("def");
+  program.name = in.word();
+  for (const char* token : {"(", ")", ":", "\n"}) in.expect(token);
+  while (!in.accept("end")) {
+    if (comment()) continue;
+    const bool along = in.accept("movep");
+    if (!along) in.expect("movel");
+    program.moves.push_back(urscript_reader::move(in, program));
+    program.moves.back().along_stroke = along;
+    in.expect("\n");
+  }
+  in.expect("\n");
+  for (const char* token : {program.name.c_str(), "(", ")", "\n"}) in.expect(token);
+  if (!in.at_end()) in.fail("nothing after the call");
+  return program;
+}
+
+}  // namespace glint::test
