@@ -13,6 +13,7 @@
 #include "platform/apps/glint/commands.hpp"
 #include "platform/apps/glint/losses_json.hpp"
 #include "platform/apps/glint/output_file.hpp"
+#include "platform/apps/glint/path_reach.hpp"
 #include "platform/apps/glint/publishing.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
@@ -27,6 +28,7 @@ struct PathArguments {
   std::string recording, button, csv, urscript, program, format, name, json;
   RecordedPathOptions options;
   ProgramSettings settings;
+  ReachArguments reach;
   PublishOptions publish;
 };
 
@@ -130,6 +132,8 @@ int make_path(PathArguments& arguments) {
   const RecordedPath drawn = recorded_path(arguments.recording, arguments.options);
   arguments.settings.recording =
       std::filesystem::path(arguments.recording).filename().string() + ", tool " + drawn.tool;
+  const PathReachReport reach = check_path(drawn.path, arguments.reach);
+  arguments.settings.checks = reach.header;
   // Makes all texts before the first file: a rejected path leaves no file.
   std::vector<std::string> texts;
   for (const PathFile& file : files) {
@@ -142,9 +146,11 @@ int make_path(PathArguments& arguments) {
     write_text(files[i].name, texts[i]);
     std::printf("written  %s\n", files[i].name.c_str());
   }
-  write_json(arguments.json, figures(drawn));
+  nlohmann::ordered_json json = figures(drawn);
+  if (!arguments.reach.robot.empty()) json["reach_failures"] = reach.failures;
+  write_json(arguments.json, json);
   publish(drawn, arguments.publish);
-  return drawn.losses.any() ? 1 : 0;
+  return drawn.losses.any() || !reach.failures.empty() ? 1 : 0;
 }
 
 // Adds an option for a length in metres, given with its unit: 2mm, 0.5cm, 0.01m.
@@ -168,7 +174,10 @@ void add_path(CLI::App& app, int& exit_code) {
       "  glint path out/run.mcap --csv path.csv --urscript path.script\n"
       "  glint path out/run.mcap --program weld.src --user-frame 2 --tool-frame 1\n"
       "  glint path out/run.mcap --button 1.0..2.5,3.0..4.2 --spacing 2mm --csv path.csv\n"
-      "A held button draws a stroke, a click sets a waypoint. Reachability is not checked.\n"
+      "  glint path out/run.mcap --program weld.src --robot arm.urdf --tip pen_tip\n"
+      "A held button draws a stroke, a click sets a waypoint. Without --robot no point is checked "
+      "for "
+      "reachability.\n"
       "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
   command->add_option("recording", arguments->recording, "recording of `glint run`")->required();
   command->add_option("--tool", arguments->options.tool,
@@ -213,6 +222,7 @@ void add_path(CLI::App& app, int& exit_code) {
       ->check(in_range(1e-2, 10.0))
       ->capture_default_str();
   add_length(command, "--blend", settings.blend_m, "largest blend radius", 0, 0.1);
+  add_reach_options(*command, arguments->reach);
   add_publish_options(*command, arguments->publish);
   command->add_flag("--allow-truncated", arguments->options.tolerance.truncated,
                     "read the undamaged records of a truncated or damaged file, count the missing "

@@ -43,9 +43,10 @@ std::string ascii(const std::string& untrusted) {
 std::vector<std::string> header_of(const DrawnPath& path, const ProgramSettings& settings) {
   std::vector<std::string> header{"Drawn with a tracked pen: " + std::to_string(path.size()) +
                                   " elements, " + std::to_string(point_count(path)) + " points."};
-  if (!settings.recording.empty()) header.push_back("Recording: " + ascii(settings.recording));
-  header.emplace_back("NOT CHECKED: reachability, joint limits, singularities, collisions.");
+  if (!settings.recording.empty()) header.push_back("Recording: " + settings.recording);
+  header.insert(header.end(), settings.checks.begin(), settings.checks.end());
   header.emplace_back("Set the tool centre point first; test slowly and in simulation.");
+  for (std::string& line : header) line = ascii(line);
   return header;
 }
 

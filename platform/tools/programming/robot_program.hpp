@@ -17,8 +17,11 @@ struct ProgramSettings {
   double blend_m = 0.005;  // maximum; also at most half of the distance to either neighbour
   std::string name = "glint_path";
   std::string recording{};  // for the header; empty: not stated
-  int user_frame = 0;       // the controller's number of the path's frame; 0: its base
-  int tool_frame = 1;       // the controller's number of the tip's frame
+  // Lines of the header that state what was checked.
+  std::vector<std::string> checks{
+      "NOT CHECKED: reachability, joint limits, singularities, collisions."};
+  int user_frame = 0;  // the controller's number of the path's frame; 0: its base
+  int tool_frame = 1;  // the controller's number of the tip's frame
 };
 
 enum class MoveKind : std::uint8_t { travel, along_stroke };

@@ -1,0 +1,31 @@
+// Options of `glint path` that check the path with a robot's kinematics.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "platform/tools/programming/reach_check.hpp"
+
+namespace glint {
+
+struct ReachArguments {
+  std::string robot, tip, start_joints;
+  std::vector<double> workspace;
+  double joint_step_deg = 30;
+  PathCheckSettings settings;
+  bool unchecked = false;
+};
+
+struct PathReachReport {
+  std::vector<std::string> failures;  // one line each
+  std::vector<std::string> header;    // of the program
+};
+
+void add_reach_options(CLI::App& command, ReachArguments& arguments);
+
+// Prints the failures. Throws InputError for an invalid robot and, without --unchecked, for a
+// failure.
+[[nodiscard]] PathReachReport check_path(const DrawnPath& path, const ReachArguments& arguments);
+
+}  // namespace glint
