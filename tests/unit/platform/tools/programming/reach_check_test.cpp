@@ -119,6 +119,30 @@ TEST(ReachCheck, ReadsTheChainOfTheTip) {
   EXPECT_THROW((void)read_chain(robot.files.folder() + "/arm.urdf", "l0"), InputError);
 }
 
+// Newton steps from a distant guess may turn a joint several times.
+TEST(InverseKinematics, SolutionIsWithinHalfATurnOfTheGuess) {
+  Arm arm;
+  arm.low.fill(-20);
+  arm.high.fill(20);
+  const Robot robot(arm);
+  InverseKinematics solver(robot.chain, {});
+  const Pose pose = Arm::forward({0.4, 0.6, 1.2, 0.3, 0.8, 0.2});
+  test::Random random(9);
+  int converged = 0;
+  for (int n = 0; n < 200; ++n) {
+    KDL::JntArray guess(6);
+    for (unsigned i = 0; i < 6; ++i) guess(i) = random.within(-15, 15);
+    const JointSolution one = solver.solve(pose, guess);
+    if (!one.converged) continue;
+    ++converged;
+    EXPECT_LE((one.joints.data - guess.data).cwiseAbs().maxCoeff(), 3.1416) << n;
+    Joints q{};
+    for (unsigned i = 0; i < 6; ++i) q[i] = one.joints(i);
+    EXPECT_LT((Arm::forward(q).translation - pose.translation).norm(), 1e-4);
+  }
+  EXPECT_GT(converged, 50);
+}
+
 // The closed form itself: forward of each inverse is the pose.
 TEST(SixAxisArm, InverseIsOfForward) {
   test::Random random(3);
