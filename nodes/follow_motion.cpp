@@ -5,22 +5,6 @@
 namespace glint {
 namespace {
 
-UncertainPose in_base(const UncertainPose& T_camera_centroid, const CorrectedHead& corrected_head) {
-  if (!corrected_head.head.valid) return T_camera_centroid;
-  const Pose& T_world_camera = corrected_head.head.T_world_camera;
-  const Pose T_world_centroid = T_world_camera * T_camera_centroid.pose;
-  return {T_camera_centroid.time, T_world_centroid,
-          rotated_covariance(T_camera_centroid.covariance, T_world_camera.rotation) +
-              corrected_head.independent_at(T_world_centroid.translation)};
-}
-
-CorrelatedErrors in_base(const CorrelatedErrors& of_camera, const CorrectedHead& corrected_head) {
-  if (!corrected_head.head.valid) return of_camera;
-  const Quaternion& rotation = corrected_head.head.T_world_camera.rotation;
-  return {rotated_covariance(of_camera.fast, rotation),
-          rotated_covariance(of_camera.slow, rotation)};
-}
-
 MeasuredPoint in_base(const IdentifiedMarker& marker, const Tool& tool,
                       const CorrectedHead& corrected_head) {
   const Pose T_base_camera =
@@ -50,6 +34,24 @@ bool is_precise(const MotionCovariance& covariance, const PrecisionLimits& preci
 }
 
 }  // namespace
+
+UncertainPose in_base(const UncertainPose& T_camera_centroid,
+                      const CorrectedHead& corrected_head) noexcept {
+  if (!corrected_head.head.valid) return T_camera_centroid;
+  const Pose& T_world_camera = corrected_head.head.T_world_camera;
+  const Pose T_world_centroid = T_world_camera * T_camera_centroid.pose;
+  return {T_camera_centroid.time, T_world_centroid,
+          rotated_covariance(T_camera_centroid.covariance, T_world_camera.rotation) +
+              corrected_head.independent_at(T_world_centroid.translation)};
+}
+
+CorrelatedErrors in_base(const CorrelatedErrors& of_camera,
+                         const CorrectedHead& corrected_head) noexcept {
+  if (!corrected_head.head.valid) return of_camera;
+  const Quaternion& rotation = corrected_head.head.T_world_camera.rotation;
+  return {rotated_covariance(of_camera.fast, rotation),
+          rotated_covariance(of_camera.slow, rotation)};
+}
 
 // Updates the filter by one or two markers; leaves `reason`, which states why there is no pose.
 void FollowMotion::update_partial(const PartialMarkers& partial, const Tool& shape,

@@ -33,6 +33,14 @@ struct PrecisionLimits {
   double rotation_rad = 0.065;
 };
 
+// A pose in the camera's frame and its correlated errors, in the frame in which the filter follows:
+// the world if the head pose is valid, else the camera.
+[[nodiscard]] UncertainPose in_base(const UncertainPose& T_camera_centroid,
+                                    const CorrectedHead& corrected_head) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] CorrelatedErrors in_base(const CorrelatedErrors& of_camera,
+                                       const CorrectedHead& corrected_head) noexcept
+    GLINT_NONBLOCKING;
+
 struct FollowMotion {
   static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "moved",
                                                               "rest_tests"};

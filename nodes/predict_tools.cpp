@@ -19,17 +19,6 @@ void express(const Pose& T_frame_base, MovingPose& moving, Matrix6& covariance,
   systematic = rotated_covariance(systematic, T_frame_base.rotation);
 }
 
-bool has_robot_pose(const RobotFrame& robot, const Estimates& estimates) {
-  const bool registered =
-      robot.state == RegistrationState::given || robot.state == RegistrationState::accepted;
-  return registered && (!robot.in_reference || estimates.has_reference);
-}
-
-Pose T_world_robot(const RobotFrame& robot, const Estimates& estimates) {
-  return robot.in_reference ? estimates.T_world_reference * robot.T_world_robot
-                            : robot.T_world_robot;
-}
-
 double axis_sigma(const Matrix6& covariance, int first) {
   const double trace = covariance(first, first) + covariance(first + 1, first + 1) +
                        covariance(first + 2, first + 2);
@@ -37,6 +26,44 @@ double axis_sigma(const Matrix6& covariance, int first) {
 }
 
 }  // namespace
+
+bool has_robot_pose(const RobotFrame& robot, const Estimates& estimates) noexcept {
+  const bool registered =
+      robot.state == RegistrationState::given || robot.state == RegistrationState::accepted;
+  return registered && (!robot.in_reference || estimates.has_reference);
+}
+
+Pose robot_in_world(const RobotFrame& robot, const Estimates& estimates) noexcept {
+  return robot.in_reference ? estimates.T_world_reference * robot.T_world_robot
+                            : robot.T_world_robot;
+}
+
+void write_tip(const CentroidEstimate& centroid, const Pose* T_base_robot,
+               const Matrix6& robot_covariance, const TipPosition& tip,
+               PoseSample& sample) noexcept {
+  MovingPose moving = centroid.moving;
+  Matrix6 covariance = centroid.covariance;
+  Vector6 twist;
+  twist << moving.velocity_m_s, moving.angular_velocity_rad_s;
+  sample.age_sigma_s = std::sqrt(centroid.stamp_s2);
+  Matrix6 systematic =
+      centroid.systematic + centroid.stamp_s2 * twist.lazyProduct(twist.transpose());
+  if (T_base_robot != nullptr) {
+    systematic +=
+        moved_covariance(robot_covariance, moving.pose.translation - T_base_robot->translation);
+    express(T_base_robot->inverse(), moving, covariance, systematic);
+  }
+  const Vector3 arm = moving.pose.rotation * tip.arm_m;
+  systematic = tip.systematic_of(systematic, moving.pose.rotation);
+  covariance = moved_covariance(covariance, arm) + systematic;
+  sample.pose = {moving.pose.rotation, moving.pose.translation + arm};
+  sample.velocity_m_s = moving.velocity_m_s + moving.angular_velocity_rad_s.cross(arm);
+  sample.angular_velocity_rad_s = moving.angular_velocity_rad_s;
+  sample.covariance = covariance;
+  sample.systematic = systematic;
+  sample.sigma_position_m = axis_sigma(covariance, 0);
+  sample.sigma_orientation_rad = axis_sigma(covariance, 3);
+}
 
 void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& estimates,
                               const graph::Latest<RobotFrame>& robot,
@@ -77,40 +104,28 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
 
     const Time when = now.tick + settings.actuation_delay;
     ++counts_[graph::loop_of<PredictTools>("poses")];
-    MovingPose moving = integrator_.after(track.motion, when - track.motion.time).value;
-    Matrix6 covariance = predict_pose(track.motion, when, settings.motion, track.noise).covariance +
-                         track.head_covariance;
-    Vector6 twist;
-    twist << moving.velocity_m_s, moving.angular_velocity_rad_s;
+    CentroidEstimate centroid;
+    centroid.moving = integrator_.after(track.motion, when - track.motion.time).value;
+    centroid.covariance =
+        predict_pose(track.motion, when, settings.motion, track.noise).covariance +
+        track.head_covariance;
+    centroid.systematic = track.calibration_covariance + track.correlated_covariance;
     const double clock_s = track.stamp_sigma.seconds();
-    const double stamp_s2 = settings.stamp_sigma_s * settings.stamp_sigma_s + clock_s * clock_s;
-    sample.age_sigma_s = std::sqrt(stamp_s2);
-    Matrix6 systematic = track.calibration_covariance + track.correlated_covariance +
-                         stamp_s2 * twist.lazyProduct(twist.transpose());
+    centroid.stamp_s2 = settings.stamp_sigma_s * settings.stamp_sigma_s + clock_s * clock_s;
     sample.frame = track.base;
+    Pose T_world_robot;
+    bool in_robot = false;
     if (track.base == ReferenceFrame::camera) {
       if (sample.reason == Reason::none) sample.reason = Reason::head_pose_missing;
     } else if (has_robot_pose(robot.value(), estimates_now)) {
-      const Pose placed = T_world_robot(robot.value(), estimates_now);
-      systematic +=
-          moved_covariance(settings.robot_covariance, moving.pose.translation - placed.translation);
-      express(placed.inverse(), moving, covariance, systematic);
+      T_world_robot = robot_in_world(robot.value(), estimates_now);
+      in_robot = true;
       sample.frame = ReferenceFrame::robot;
     } else if (sample.reason == Reason::none) {
       sample.reason = Reason::no_reference;
     }
-
-    const TipPosition& tip = estimates_now.tips[static_cast<std::size_t>(t)];
-    const Vector3 arm = moving.pose.rotation * tip.arm_m;
-    systematic = tip.systematic_of(systematic, moving.pose.rotation);
-    covariance = moved_covariance(covariance, arm) + systematic;
-    sample.pose = {moving.pose.rotation, moving.pose.translation + arm};
-    sample.velocity_m_s = moving.velocity_m_s + moving.angular_velocity_rad_s.cross(arm);
-    sample.angular_velocity_rad_s = moving.angular_velocity_rad_s;
-    sample.covariance = covariance;
-    sample.systematic = systematic;
-    sample.sigma_position_m = axis_sigma(covariance, 0);
-    sample.sigma_orientation_rad = axis_sigma(covariance, 3);
+    write_tip(centroid, in_robot ? &T_world_robot : nullptr, settings.robot_covariance,
+              estimates_now.tips[static_cast<std::size_t>(t)], sample);
   }
 }
 

@@ -24,6 +24,26 @@
 
 namespace glint {
 
+// Pose of a tool's marker centroid in its base, with the parts of its covariance.
+struct CentroidEstimate {
+  MovingPose moving;
+  Matrix6 covariance = Matrix6::Zero();  // random part, and of the headset's localisation
+  Matrix6 systematic = Matrix6::Zero();  // calibration and correlated errors
+  double stamp_s2 = 0;                   // variance of its time stamp
+};
+
+// Whether T_world_robot exists, and its value.
+[[nodiscard]] bool has_robot_pose(const RobotFrame& robot,
+                                  const Estimates& estimates) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] Pose robot_in_world(const RobotFrame& robot,
+                                  const Estimates& estimates) noexcept GLINT_NONBLOCKING;
+
+// Writes pose, velocities and covariances of the tip into the sample: in the robot's frame, or in
+// the base if T_base_robot is null. `robot_covariance`: of T_base_robot, about the robot's base.
+void write_tip(const CentroidEstimate& centroid, const Pose* T_base_robot,
+               const Matrix6& robot_covariance, const TipPosition& tip,
+               PoseSample& sample) noexcept GLINT_NONBLOCKING;
+
 struct PredictSettings {
   Duration nominal_gap = {22'222'222};         // the camera's period: 22.2 ms for AHAT
   Duration lost_after = milliseconds(250);     // at most 400

@@ -30,20 +30,39 @@ void propagate_rows(MotionCovariance& p, int row, const SingerStep& step, const 
   p.middleRows<3>(acceleration) *= step.acceleration_decay;
 }
 
+// The transition from a state to a later time.
+struct Step {
+  SingerStep linear, angular;
+  Quaternion rotation;
+  Matrix3 rotation_matrix, half_matrix;
+};
+
+Step step_of(const MotionState& state, Time time, const MotionSettings& settings) {
+  const double seconds = (time - state.time).seconds();
+  Step step;
+  step.linear = singer_step(settings.linear_damping_1_s, seconds);
+  step.angular = singer_step(settings.angular_damping_1_s, seconds);
+  const Vector3 rotation_vector =
+      step.angular.seconds * state.angular_velocity_rad_s +
+      step.angular.position_by_acceleration * state.angular_acceleration_rad_s2;
+  step.rotation = from_rotation_vector(rotation_vector);
+  step.rotation_matrix = step.rotation.toRotationMatrix();
+  // The left Jacobian of a rotation is the rotation by half its vector, up to rotation_vector^2
+  // / 24.
+  step.half_matrix = from_rotation_vector(0.5 * rotation_vector).toRotationMatrix();
+  return step;
+}
+
+// p = F p
+void apply_transition(const Step& step, MotionCovariance& p) {
+  propagate_rows(p, k_position, step.linear, Matrix3::Identity(), Matrix3::Identity());
+  propagate_rows(p, k_rotation, step.angular, step.rotation_matrix, step.half_matrix);
+}
+
 void add_noise(MotionCovariance& p, int row, const Matrix3& noise) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
       for (int i = 0; i < 3; ++i) p(row + 3 * a + i, row + 3 * b + i) += noise(a, b);
-}
-
-void apply(MotionState& state, const Gain<1>& error) {
-  state.pose.translation += error.segment<3>(k_position);
-  state.velocity_m_s += error.segment<3>(k_velocity);
-  state.acceleration_m_s2 += error.segment<3>(k_acceleration);
-  state.pose.rotation =
-      (from_rotation_vector(error.segment<3>(k_rotation)) * state.pose.rotation).normalized();
-  state.angular_velocity_rad_s += error.segment<3>(k_angular_velocity);
-  state.angular_acceleration_rad_s2 += error.segment<3>(k_angular_acceleration);
 }
 
 // p = T p T', where T rotates each triple of errors by `rotation`.
@@ -69,7 +88,7 @@ Correction correct(MotionState& state, const Gain<M>& ph, const Eigen::Matrix<do
   for (int i = 0; i < k_motion_size; ++i) w.col(i) = factor.forward(ph.row(i).transpose());
   const Eigen::Matrix<double, M, 1> whitened = factor.forward(innovation);
   correction.nis = whitened.squaredNorm();
-  apply(state, w.transpose().lazyProduct(whitened));
+  add_error(state, w.transpose().lazyProduct(whitened));
   state.covariance -= w.transpose().lazyProduct(w);
   return correction;
 }
@@ -125,38 +144,54 @@ MotionState initial_motion_state(const UncertainPose& first,
 void propagate(MotionState& state, Time time, const MotionSettings& settings,
                const NoiseScale& scale) noexcept {
   if (time <= state.time) return;
-  const double seconds = (time - state.time).seconds();
-  const SingerStep linear = singer_step(settings.linear_damping_1_s, seconds);
-  const SingerStep angular = singer_step(settings.angular_damping_1_s, seconds);
-  const Vector3 rotation_vector =
-      angular.seconds * state.angular_velocity_rad_s +
-      angular.position_by_acceleration * state.angular_acceleration_rad_s2;
-  const Quaternion rotation = from_rotation_vector(rotation_vector);
-  const Matrix3 rotation_matrix = rotation.toRotationMatrix();
-  // The left Jacobian of a rotation is the rotation by half its vector, up to rotation_vector^2
-  // / 24.
-  const Matrix3 half_matrix = from_rotation_vector(0.5 * rotation_vector).toRotationMatrix();
-
+  const Step step = step_of(state, time, settings);
+  const SingerStep &linear = step.linear, &angular = step.angular;
   state.time = time;
   state.pose.translation += linear.seconds * state.velocity_m_s +
                             linear.position_by_acceleration * state.acceleration_m_s2;
   state.velocity_m_s += linear.velocity_by_acceleration * state.acceleration_m_s2;
   state.acceleration_m_s2 *= linear.acceleration_decay;
-  state.pose.rotation = (rotation * state.pose.rotation).normalized();
+  state.pose.rotation = (step.rotation * state.pose.rotation).normalized();
   state.angular_velocity_rad_s +=
       angular.velocity_by_acceleration * state.angular_acceleration_rad_s2;
   state.angular_acceleration_rad_s2 *= angular.acceleration_decay;
 
   MotionCovariance& p = state.covariance;
   for (int side = 0; side < 2; ++side) {  // F P, then F (F P)' = F P F'
-    propagate_rows(p, k_position, linear, Matrix3::Identity(), Matrix3::Identity());
-    propagate_rows(p, k_rotation, angular, rotation_matrix, half_matrix);
+    apply_transition(step, p);
     p.transposeInPlace();
   }
   // Symmetrise: asymmetry by rounding would grow with the square of time.
   p = (0.5 * (p + p.transpose())).eval();
   add_noise(p, k_position, (scale.linear * settings.linear_noise_m2_s5) * linear.noise);
   add_noise(p, k_rotation, (scale.angular * settings.angular_noise_rad2_s5) * angular.noise);
+}
+
+MotionCovariance transition_to(const MotionState& state, Time time,
+                               const MotionSettings& settings) noexcept {
+  MotionCovariance f = MotionCovariance::Identity();
+  if (time > state.time) apply_transition(step_of(state, time, settings), f);
+  return f;
+}
+
+void add_error(MotionState& state, const MotionStateError& error) noexcept {
+  state.pose.translation += error.segment<3>(k_position);
+  state.velocity_m_s += error.segment<3>(k_velocity);
+  state.acceleration_m_s2 += error.segment<3>(k_acceleration);
+  state.pose.rotation =
+      (from_rotation_vector(error.segment<3>(k_rotation)) * state.pose.rotation).normalized();
+  state.angular_velocity_rad_s += error.segment<3>(k_angular_velocity);
+  state.angular_acceleration_rad_s2 += error.segment<3>(k_angular_acceleration);
+}
+
+MotionStateError motion_difference(const MotionState& a, const MotionState& b) noexcept {
+  MotionStateError error;
+  error << a.pose.translation - b.pose.translation, a.velocity_m_s - b.velocity_m_s,
+      a.acceleration_m_s2 - b.acceleration_m_s2,
+      rotation_vector(a.pose.rotation * b.pose.rotation.conjugate()),
+      a.angular_velocity_rad_s - b.angular_velocity_rad_s,
+      a.angular_acceleration_rad_s2 - b.angular_acceleration_rad_s2;
+  return error;
 }
 
 Correction correct_by_pose(MotionState& state, const UncertainPose& measured) noexcept {

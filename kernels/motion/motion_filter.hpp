@@ -52,6 +52,16 @@ struct Correction {
 void propagate(MotionState& state, Time time, const MotionSettings& settings,
                const NoiseScale& scale) noexcept GLINT_NONBLOCKING;
 
+// F: transition of an error of `state` to `time`; the identity for an earlier time.
+[[nodiscard]] MotionCovariance transition_to(
+    const MotionState& state, Time time, const MotionSettings& settings) noexcept GLINT_NONBLOCKING;
+
+// Corrects the state by an error, in the order of the error vector; leaves the covariance.
+void add_error(MotionState& state, const MotionStateError& error) noexcept GLINT_NONBLOCKING;
+// The error of b for which add_error(b, error) gives a.
+[[nodiscard]] MotionStateError motion_difference(const MotionState& a,
+                                                 const MotionState& b) noexcept GLINT_NONBLOCKING;
+
 // Require a measurement of the state's own time. A non-positive innovation covariance returns
 // Reason::degenerate and changes nothing.
 [[nodiscard]] Correction correct_by_pose(MotionState& state,

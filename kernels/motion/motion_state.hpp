@@ -16,6 +16,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 inline constexpr int k_position = 0, k_velocity = 3, k_acceleration = 6;
 inline constexpr int k_rotation = 9, k_angular_velocity = 12, k_angular_acceleration = 15;
 inline constexpr int k_motion_size = 18;
+using MotionStateError = Eigen::Matrix<double, k_motion_size, 1>;
 using MotionCovariance = Eigen::Matrix<double, k_motion_size, k_motion_size>;
 
 struct MotionState {

@@ -74,6 +74,8 @@ class MotionTrack {
   [[nodiscard]] bool is_static() const { return rest_.is_static(); }
   [[nodiscard]] const Vector3& place() const { return state_.pose.translation; }
   [[nodiscard]] const NoiseScale& noise_scale() const { return scale_; }
+  // Factor on the covariance that inflate_covariance() adds, see ToolMotionSettings::inflation.
+  [[nodiscard]] double inflation_scale() const { return inflation_scale_; }
   // Noise scale under partial visibility, see partial_visibility_noise.
   [[nodiscard]] NoiseScale partial_visibility_noise_scale(
       const ToolMotionSettings& settings) const {

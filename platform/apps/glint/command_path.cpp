@@ -42,6 +42,17 @@ double largest_sigma_m(const DrawnPath& path) {
   return std::sqrt(most);
 }
 
+double median_sigma_m(const DrawnPath& path) {
+  std::vector<double> variances;
+  for (const PathElement& element : path)
+    for (const UncertainPose& point : element.points)
+      variances.push_back(point.covariance.topLeftCorner<3, 3>().trace() / 3);
+  if (variances.empty()) return 0;
+  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+  std::nth_element(variances.begin(), middle, variances.end());
+  return std::sqrt(*middle);
+}
+
 void print_table(const RecordedPath& drawn, double spacing_m) {
   const CaptureCounts& counts = drawn.counts;
   int number = 0;
@@ -55,6 +66,13 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
   std::printf("poses while held %lld, used %lld; largest sigma an axis %.2f mm\n",
               static_cast<long long>(counts.poses), static_cast<long long>(counts.poses_accepted),
               1e3 * largest_sigma_m(drawn.path));
+  if (drawn.poses == PathPoses::smoothed) {
+    std::printf("smoothed over %lld measured frames; median sigma an axis %.2f mm\n",
+                static_cast<long long>(drawn.frames), 1e3 * median_sigma_m(drawn.path));
+  } else {
+    std::printf("poses as sent at the ticks; median sigma an axis %.2f mm\n",
+                1e3 * median_sigma_m(drawn.path));
+  }
   if (spacing_m < 2 * largest_sigma_m(drawn.path)) {
     std::printf(
         "notice  points are %.2f mm apart, less than twice their sigma: noise dominates some; set "
@@ -66,6 +84,7 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
   };
   if (drawn.losses.any())
     std::printf("notice  the recording lacks %s\n", text_of(drawn.losses).c_str());
+  notice(drawn.replay_mismatches, "output records differ from the replay's, which was smoothed");
   notice(counts.not_measured, "poses left out: not measured");
   notice(counts.not_in_robot, "poses left out: not in the robot's frame");
   notice(counts.not_usable, "poses left out: out of order or a jump");
@@ -87,6 +106,10 @@ nlohmann::ordered_json figures(const RecordedPath& drawn) {
           {"events", drawn.events},
           {"elements", elements},
           {"points", point_count(drawn.path)},
+          {"smoothed", drawn.poses == PathPoses::smoothed},
+          {"frames", drawn.frames},
+          {"replay_mismatches", drawn.replay_mismatches},
+          {"median_sigma_mm", 1e3 * median_sigma_m(drawn.path)},
           {"largest_sigma_mm", 1e3 * largest_sigma_m(drawn.path)},
           {"poses", counts.poses},
           {"taken", counts.poses_accepted},
@@ -178,6 +201,7 @@ void add_path(CLI::App& app, int& exit_code) {
       "A held button draws a stroke, a click sets a waypoint. Without --robot no point is checked "
       "for "
       "reachability.\n"
+      "Poses are smoothed in hindsight over the measured frames of a stroke; --live: as sent.\n"
       "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
   command->add_option("recording", arguments->recording, "recording of `glint run`")->required();
   command->add_option("--tool", arguments->options.tool,
@@ -188,6 +212,9 @@ void add_path(CLI::App& app, int& exit_code) {
   CaptureSettings& capture = arguments->options.capture;
   add_length(command, "--spacing", capture.stroke.spacing_m, "distance between points of a stroke",
              1e-4, 0.1);
+  command->add_flag_callback(
+      "--live", [arguments] { arguments->options.poses = PathPoses::as_sent; },
+      "keep the poses sent at the ticks; default: smoothed over the measured frames, if recorded");
   command->add_option("--points-max", capture.points_max, "capacity in points")
       ->check(in_range(1, 1 << 22))
       ->capture_default_str();

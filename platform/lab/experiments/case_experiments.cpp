@@ -15,6 +15,7 @@
 #include "platform/lab/experiments/motion_experiments.hpp"
 #include "platform/lab/experiments/noise_experiment.hpp"
 #include "platform/lab/experiments/reference_experiment.hpp"
+#include "platform/lab/experiments/strokes_run.hpp"
 #include "platform/lab/experiments/verify_experiment.hpp"
 #include "platform/lab/experiments/warnings_experiment.hpp"
 
@@ -40,6 +41,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_occlusion},
       {"rates", "frames at 45, 5 and 45 Hz, dropped, doubled, late and stamped backwards", none,
        run_rates},
+      {"strokes", "drawn strokes smoothed in hindsight, beside the live prediction, at 45 and 5 Hz",
+       none, run_strokes},
       {"anchored",
        "a reference body in view, built-in settings, a headset that drifts more than declared",
        none, run_drift_correction},

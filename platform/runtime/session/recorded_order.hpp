@@ -29,15 +29,17 @@ class RecordedVersions {
   void publish(std::uint64_t version) {
     const auto value = values_.find(version);
     if (value == values_.end()) return;
-    buffer_.write_slot() = value->second;
+    buffer_.write_slot() = published_ = value->second;
     buffer_.publish(version, 0);
     values_.erase(values_.begin(), std::next(value));
   }
   [[nodiscard]] graph::TripleBuffer<T>& buffer() noexcept { return buffer_; }
+  [[nodiscard]] const T& published() const noexcept { return published_; }  // the newest one
 
  private:
   std::map<std::uint64_t, T> values_;
   graph::TripleBuffer<T> buffer_;
+  T published_{};
 };
 
 class RecordedOrder {

@@ -49,6 +49,7 @@ void recompute(const Cell& cell, RecordingReader& reader, const ReplayOptions& o
   // After a gap no record is compared, since the tracker lacks frames from there on.
   RecordedOrder order(reader, [&](OutputMessage& output) {
     ++result.records_recorded;
+    if (output.tick > options.until) return;
     if (!order.has_gap()) comparison.recorded.push_back(std::move(output.record));
     comparison.compare(result);
   });
@@ -71,6 +72,7 @@ void recompute(const Cell& cell, RecordingReader& reader, const ReplayOptions& o
 
   std::uint64_t tools_published = 0;
   const auto on_frame = [&](const NextRelease& release) {
+    if (release.nominal > options.until) return;
     nominal = release.nominal;
     const std::uint64_t version = release.recorded->versions[0];
     if (version != tools_published) {
@@ -79,9 +81,12 @@ void recompute(const Cell& cell, RecordingReader& reader, const ReplayOptions& o
     }
     frames->process(*release.frame, release.recorded);
     ++result.frames;
+    if (options.on_frame && frames->tracker() != nullptr)
+      options.on_frame(tracked_frame(*frames->tracker()), order.robot.published());
   };
   // After a gap a tick uses the older versions.
   const auto on_tick = [&](const NextRelease& release) {
+    if (release.nominal > options.until) return;
     nominal = release.nominal;
     if (options.progress) options.progress((nominal - Time{}).seconds());
     if (!ticks->release_as(*release.recorded)) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "platform/runtime/session/tracked_frame.hpp"
 #include "platform/sinks/record/recording_reader.hpp"
 
 namespace glint {
@@ -14,6 +15,9 @@ struct ReplayOptions {
   int workers = 1;  // 1 or 2: the same bytes
   ReadTolerance tolerance;
   std::function<void(double seconds)> progress;  // position in the recording
+  // Called after each frame that was tracked in time; the robot's pose is that of the newest tick.
+  std::function<void(const TrackedFrame&, const RobotFrame&)> on_frame;
+  Time until{INT64_MAX};  // later releases are neither run nor compared
 };
 
 struct ReplayResult {

@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_points_max = 1 << 22;
+constexpr int k_path_points_max = 1 << 22;
 constexpr int k_elements_max = 1 << 20;
 
 void check_capture(bool right, const std::string& what) {
@@ -21,8 +21,8 @@ PathCapture::PathCapture(const CaptureSettings& settings) : settings_(settings) 
                 "stroke settings; expected numbers above 0, turns of at most pi");
   check_capture(settings.click_max.nanoseconds >= 0 && settings.click_radius_m >= 0,
                 "click settings; expected 0 or more");
-  check_capture(settings.points_max >= 1 && settings.points_max <= k_points_max,
-                "points_max; expected 1 to " + std::to_string(k_points_max));
+  check_capture(settings.points_max >= 1 && settings.points_max <= k_path_points_max,
+                "points_max; expected 1 to " + std::to_string(k_path_points_max));
   check_capture(settings.elements_max >= 1 && settings.elements_max <= k_elements_max,
                 "elements_max; expected 1 to " + std::to_string(k_elements_max));
   const auto elements = static_cast<std::size_t>(settings.elements_max);
