@@ -42,7 +42,7 @@ std::span<const CaseExperiment> case_experiments() {
       {"rates", "frames at 45, 5 and 45 Hz, dropped, doubled, late and stamped backwards", none,
        run_rates},
       {"strokes", "drawn strokes smoothed in hindsight, beside the live prediction, at 45 and 5 Hz",
-       none, run_strokes},
+       optional, run_strokes},
       {"anchored",
        "a reference body in view, built-in settings, a headset that drifts more than declared",
        none, run_drift_correction},

@@ -1,6 +1,8 @@
 #include <string>
+#include <vector>
 
 #include "kernels/angles.hpp"
+#include "platform/lab/experiments/recordings.hpp"
 #include "platform/lab/experiments/strokes_run.hpp"
 
 namespace glint {
@@ -42,6 +44,21 @@ std::string stroke_name(const StrokeCase& stroke) {
          (stroke.reference_body ? ", body" : "");
 }
 
+// Motions that the simulator did not make: without bars, as their ends and gaps are not a hand's.
+void add_recorded(const CaseOptions& options, CaseList& list) {
+  const std::vector<Trajectory> motions = load_recordings(options);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    for (const bool slow : {false, true}) {
+      StrokeErrors errors;
+      follow_recorded_stroke(motions[i], slow ? milliseconds(200) : Duration{22'222'222},
+                             options.seed, errors);
+      list.cases.push_back(
+          stroke_case(std::string(k_recordings[i].name) + (slow ? ", 5 Hz" : ", 45 Hz"), "smoothed",
+                      errors, false));
+    }
+  }
+}
+
 }  // namespace
 
 CaseList run_strokes(const CaseOptions& options) {
@@ -54,6 +71,7 @@ CaseList run_strokes(const CaseOptions& options) {
   const int all = static_cast<int>(std::size(k_cases)) * seeds;
   int done = 0;
   double fast_rms_m = 0;
+  StrokeErrors pooled;  // both rates
   for (const StrokeCase& stroke : k_cases) {
     StrokeTally tally;
     for (int i = 0; i < seeds; ++i) {
@@ -69,6 +87,8 @@ CaseList run_strokes(const CaseOptions& options) {
         smoothed.figures.push_back({"over_45_hz", "", tally.smoothed.position_rms_m() / fast_rms_m,
                                     bar(Bar::at_most(k_rate_ratio_max))});
       fast_rms_m = tally.smoothed.position_rms_m();
+      if (!stroke.slow) pooled = {};
+      pooled.add(tally.smoothed);
     } else {
       smoothed.figures.push_back({"from_line", "mm", 1e3 * tally.smoothed.from_line_rms_m(),
                                   bar(Bar::at_most(k_from_line_max_mm))});
@@ -77,7 +97,13 @@ CaseList run_strokes(const CaseOptions& options) {
     smoothed.figures.push_back({"ticks_with_pose", "%", percentage(tally.smoothed.n, tally.ticks)});
     list.cases.push_back(std::move(smoothed));
     list.cases.push_back(std::move(live));
+    if (stroke.shape == hand && stroke.slow) {
+      list.cases.push_back(
+          stroke_case(stroke.reference_body ? "hand, pooled, body" : "hand, pooled", "smoothed",
+                      pooled, judged));
+    }
   }
+  if (!options.data.empty()) add_recorded(options, list);
   return list;
 }
 

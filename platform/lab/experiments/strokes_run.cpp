@@ -7,9 +7,11 @@
 #include "kernels/elementary.hpp"
 #include "kernels/motion/cholesky.hpp"
 #include "kernels/motion/motion_filter.hpp"
+#include "kernels/motion/tool_motion.hpp"
 #include "nodes/output.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/lab/experiments/experiment.hpp"
+#include "platform/lab/experiments/prediction_run.hpp"
 #include "platform/runtime/session/pipeline.hpp"
 #include "platform/sim/hand_motion.hpp"
 #include "platform/sim/scenarios.hpp"
@@ -75,23 +77,6 @@ sim::Scenario stroke_scenario(const StrokeCase& stroke, std::uint64_t seed) {
   return stroke.reference_body ? with_reference(std::move(scenario)) : scenario;
 }
 
-void add_error_of(const Pose& truth, const PoseSample& sample, StrokeErrors& errors) {
-  const Vector6 error = pose_difference(sample.pose, truth);
-  const Matrix3 position = sample.covariance.topLeftCorner<3, 3>();
-  const Matrix3 rotation = sample.covariance.bottomRightCorner<3, 3>();
-  const auto inside = [](const Matrix3& covariance, const Vector3& off) {
-    const Cholesky<3> root(covariance);
-    return root.positive && root.squared_length(off) <= k_inside_95_of_3 ? 1 : 0;
-  };
-  ++errors.n;
-  errors.position_m2 += error.head<3>().squaredNorm();
-  errors.rotation_rad2 += error.tail<3>().squaredNorm();
-  errors.position_variance_m2 += position.trace();
-  errors.rotation_variance_rad2 += rotation.trace();
-  errors.position_inside += inside(position, error.head<3>());
-  errors.rotation_inside += inside(rotation, error.tail<3>());
-}
-
 // The tracker and the tick group, as in a run.
 class StrokeChain {
  public:
@@ -151,6 +136,34 @@ double root_mean(double sum, std::int64_t n) {
 
 }  // namespace
 
+void StrokeErrors::add(const UncertainPose& estimate, const Pose& truth) {
+  const Vector6 error = pose_difference(estimate.pose, truth);
+  const Matrix3 position = estimate.covariance.topLeftCorner<3, 3>();
+  const Matrix3 rotation = estimate.covariance.bottomRightCorner<3, 3>();
+  const auto inside = [](const Matrix3& covariance, const Vector3& off) {
+    const Cholesky<3> root(covariance);
+    return root.positive && root.squared_length(off) <= k_inside_95_of_3 ? 1 : 0;
+  };
+  ++n;
+  position_m2 += error.head<3>().squaredNorm();
+  rotation_rad2 += error.tail<3>().squaredNorm();
+  position_variance_m2 += position.trace();
+  rotation_variance_rad2 += rotation.trace();
+  position_inside += inside(position, error.head<3>());
+  rotation_inside += inside(rotation, error.tail<3>());
+}
+
+void StrokeErrors::add(const StrokeErrors& other) {
+  n += other.n;
+  position_m2 += other.position_m2;
+  rotation_rad2 += other.rotation_rad2;
+  position_variance_m2 += other.position_variance_m2;
+  rotation_variance_rad2 += other.rotation_variance_rad2;
+  position_inside += other.position_inside;
+  rotation_inside += other.rotation_inside;
+  from_line_m2 += other.from_line_m2;
+}
+
 double StrokeErrors::position_rms_m() const { return root_mean(position_m2, n); }
 double StrokeErrors::rotation_rms_rad() const { return root_mean(rotation_rad2, n); }
 double StrokeErrors::position_sigma_m() const { return root_mean(position_variance_m2, n); }
@@ -188,7 +201,7 @@ void follow_stroke(const StrokeCase& stroke, std::uint64_t seed, StrokeTally& ta
     const Pose truth =
         T_world_robot.inverse() * Pose{T_world_tool.rotation, T_world_tool * pen.tip_m};
     const auto judge = [&](const PoseSample& estimate, StrokeErrors& errors) {
-      add_error_of(truth, estimate, errors);
+      errors.add({estimate.tick, estimate.pose, estimate.covariance}, truth);
       if (stroke.shape == StrokeShape::hand) return;
       const Vector3 offset = T_world_robot * estimate.pose.translation - rest;
       const double off = distance_from_line(stroke.shape, offset);
@@ -197,6 +210,39 @@ void follow_stroke(const StrokeCase& stroke, std::uint64_t seed, StrokeTally& ta
     judge(hindsight, tally.smoothed);
     judge(sample, tally.live);
   }
+}
+
+void follow_recorded_stroke(const Trajectory& motion, Duration period, std::uint64_t seed,
+                            StrokeErrors& errors) {
+  PredictionSettings settings;
+  settings.period = period;
+  const NoisyRecording recording = noisy(motion, settings, seed);
+  ToolMotion filter;  // adapts the process noise
+  std::vector<StrokeFrame> frames;
+  const auto judge = [&] {
+    std::vector<SmoothedFrame> memory(frames.size());
+    StrokeSmoother smoother;
+    if (smoother.smooth(frames, filter.settings.motion, memory) != Reason::none) return;
+    for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
+      for (const int quarter : {0, 1, 2, 3}) {
+        const Time time = frames[i].measured.time + Duration{quarter * period.nanoseconds / 4};
+        const Result<MotionState> state = smoother.at(time, frames);
+        if (state) errors.add(pose_of(state.value), interpolated(recording.truth, time));
+      }
+    }
+  };
+  for (const UncertainPose& measured : recording.measured) {
+    const bool follows =
+        !frames.empty() &&
+        2 * (measured.time - frames.back().measured.time).nanoseconds <= 3 * period.nanoseconds;
+    if (!follows || frames.size() == k_stroke_frames_max) {
+      judge();
+      frames.clear();
+    }
+    if (filter.update(measured) != Reason::none) continue;
+    frames.push_back({measured, filter.noise_scale(), {}, Matrix6::Zero()});
+  }
+  judge();
 }
 
 }  // namespace glint

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/motion/motion_state.hpp"
+#include "platform/formats/trajectory.hpp"
 #include "platform/lab/experiments/case_list.hpp"
 
 namespace glint {
@@ -29,6 +31,8 @@ struct StrokeErrors {
   std::int64_t position_inside = 0, rotation_inside = 0;        // the 95 % ellipsoid, 3 axes each
   double from_line_m2 = 0;  // sum of squared distances from the edge or the circle
 
+  void add(const UncertainPose& estimate, const Pose& truth);
+  void add(const StrokeErrors& other);
   [[nodiscard]] double position_rms_m() const;
   [[nodiscard]] double rotation_rms_rad() const;
   [[nodiscard]] double position_sigma_m() const;
@@ -44,7 +48,13 @@ struct StrokeTally {
 
 void follow_stroke(const StrokeCase& stroke, std::uint64_t seed, StrokeTally& tally);
 
-// Strokes at 45 and 5 Hz with and without a reference body, a straight edge and a circle.
+// A recorded motion, measured with declared noise every `period`, smoothed and judged at the
+// measurements and between them. Gaps of the recording end a stroke.
+void follow_recorded_stroke(const Trajectory& motion, Duration period, std::uint64_t seed,
+                            StrokeErrors& errors);
+
+// With options.data also recorded motions. Strokes at 45 and 5 Hz with and without a reference
+// body, a straight edge and a circle.
 [[nodiscard]] CaseList run_strokes(const CaseOptions& options);
 
 }  // namespace glint
