@@ -97,7 +97,7 @@ class StrokeChain {
     tracker_->latest<ToolSet>().set(cell_.tools, 1, 0);
     robot_ = {RegistrationState::given, {}, 0, reference_body};
     output_->latest<RobotFrame>().set(robot_, 1, 0);
-    frames_ = std::make_unique<DrawnFrames>(0, cell_.camera.uncertainty.time_stamp_s);
+    frames_ = std::make_unique<MeasuredFrames>(0, cell_.camera.uncertainty.time_stamp_s);
   }
 
   void frame(const sim::SimFrame& frame) {
@@ -126,7 +126,7 @@ class StrokeChain {
   RobotFrame robot_;
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   std::unique_ptr<Output> output_ = std::make_unique<Output>();
-  std::unique_ptr<DrawnFrames> frames_;
+  std::unique_ptr<MeasuredFrames> frames_;
   std::uint64_t version_ = 0;
 };
 

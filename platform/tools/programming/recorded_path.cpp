@@ -97,7 +97,7 @@ class HindsightPoses {
     const double place = cell.robot_sigma_m, turn = cell.robot_sigma_rad;
     settings.robot_covariance.diagonal() << Vector3::Constant(place * place),
         Vector3::Constant(turn * turn);
-    frames_ = std::make_unique<DrawnFrames>(
+    frames_ = std::make_unique<MeasuredFrames>(
         tool, cell.camera.uncertainty.time_stamp_s,
         [this, margin = settings.margin](Time time) { return is_near_stroke(time, margin); });
     ReplayOptions replayed;
@@ -136,7 +136,7 @@ class HindsightPoses {
 
   std::vector<DrawTime> times_;
   std::size_t next_ = 0;  // the stroke after the selected one
-  std::unique_ptr<DrawnFrames> frames_;
+  std::unique_ptr<MeasuredFrames> frames_;
   std::unique_ptr<SmoothedMotion> motion_;
   std::int64_t mismatches_ = 0;
 };

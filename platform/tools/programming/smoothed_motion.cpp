@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-Time time_of(const DrawnFrame& frame) { return frame.frame.measured.time; }
+Time time_of(const MeasuredFrame& frame) { return frame.frame.measured.time; }
 
 std::string seconds_text(Time time) {
   return std::to_string(static_cast<double>(time.nanoseconds) * 1e-9) + " s";
@@ -17,12 +17,12 @@ std::string seconds_text(Time time) {
 
 }  // namespace
 
-SmoothedMotion::SmoothedMotion(const std::vector<DrawnFrame>& frames,
+SmoothedMotion::SmoothedMotion(const std::vector<MeasuredFrame>& frames,
                                const SmoothedMotionSettings& settings)
     : frames_(frames), settings_(settings) {}
 
 bool SmoothedMotion::continues(std::size_t frame) const {
-  const DrawnFrame& here = frames_[frame];
+  const MeasuredFrame& here = frames_[frame];
   const Duration gap = time_of(here) - time_of(frames_[frame - 1]);
   const Duration most = here.frames_without > 0 ? settings_.hidden_gap_max : settings_.slow_gap_max;
   return !here.restarts && gap.nanoseconds > 0 && gap <= most;
@@ -68,8 +68,8 @@ bool SmoothedMotion::write(PoseSample& sample) const {
     // The state is in the parent frame of the first frame that is not earlier.
     std::size_t i = segment.first;
     while (time_of(frames_[i]) < sample.tick) ++i;
-    const DrawnFrame& after = frames_[i];
-    const DrawnFrame& before = i > segment.first ? frames_[i - 1] : after;
+    const MeasuredFrame& after = frames_[i];
+    const MeasuredFrame& before = i > segment.first ? frames_[i - 1] : after;
     const double gap_s = (time_of(after) - time_of(before)).seconds();
     const double share = gap_s > 0 ? (sample.tick - time_of(before)).seconds() / gap_s : 1;
     CentroidEstimate centroid;

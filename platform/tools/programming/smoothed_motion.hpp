@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kernels/path/smooth_stroke.hpp"
-#include "platform/tools/programming/drawn_frames.hpp"
+#include "platform/tools/programming/measured_frames.hpp"
 
 namespace glint {
 
@@ -27,7 +27,7 @@ struct SmoothedMotionSettings {
 class SmoothedMotion {
  public:
   // The frames must outlive this object.
-  SmoothedMotion(const std::vector<DrawnFrame>& frames, const SmoothedMotionSettings& settings);
+  SmoothedMotion(const std::vector<MeasuredFrame>& frames, const SmoothedMotionSettings& settings);
 
   // Smooths the frames of [from, to] and of the margins. Throws InputError for more than
   // k_stroke_frames_max frames.
@@ -50,7 +50,7 @@ class SmoothedMotion {
   [[nodiscard]] bool continues(std::size_t frame) const;
   void smooth(std::size_t begin, std::size_t end);
 
-  const std::vector<DrawnFrame>& frames_;
+  const std::vector<MeasuredFrame>& frames_;
   SmoothedMotionSettings settings_;
   std::vector<Segment> segments_;
   std::int64_t frames_used_ = 0;

@@ -17,11 +17,12 @@ Vector3 true_place(Time time) {
 }
 
 // Frames of a tool that translates, each with white noise and all with one common error.
-std::vector<DrawnFrame> drawn(int count, Duration period, const Vector3& common = Vector3::Zero()) {
+std::vector<MeasuredFrame> drawn(int count, Duration period,
+                                 const Vector3& common = Vector3::Zero()) {
   test::Random random(17);
-  std::vector<DrawnFrame> frames(static_cast<std::size_t>(count));
+  std::vector<MeasuredFrame> frames(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    DrawnFrame& drawn = frames[static_cast<std::size_t>(i)];
+    MeasuredFrame& drawn = frames[static_cast<std::size_t>(i)];
     UncertainPose& measured = drawn.frame.measured;
     measured.time = at_ms(1000) + period * i;
     measured.pose.translation = true_place(measured.time) + random.vector(k_white_m) + common;
@@ -79,7 +80,7 @@ TEST(SmoothedMotion, AddsTheHeadsetsErrorAndTheTimeStamps) {
   before.select(at_ms(1000), at_ms(2000));
   PoseSample without = tick_at(at_ms(1500));
   ASSERT_TRUE(before.write(without));
-  for (DrawnFrame& frame : frames) {
+  for (MeasuredFrame& frame : frames) {
     frame.head_covariance(1, 1) = 1e-6;
     frame.stamp_s2 = 1e-4;
   }
@@ -97,7 +98,7 @@ TEST(SmoothedMotion, AddsTheHeadsetsErrorAndTheTimeStamps) {
 TEST(SmoothedMotion, WritesTheTipInTheRobotsFrame) {
   auto frames = drawn(60, k_45_hz);
   const Pose T_world_robot{from_rotation_vector(Vector3(0, 0, 1)), Vector3(0.5, 0.2, 0.1)};
-  for (DrawnFrame& frame : frames) {
+  for (MeasuredFrame& frame : frames) {
     frame.T_base_robot = T_world_robot;
     frame.tip.arm_m = Vector3(0, 0, -0.1);
   }
@@ -153,7 +154,7 @@ TEST(SmoothedMotion, UsesTheMarginAndNothingBeyond) {
   EXPECT_FALSE(covers(motion, at_ms(1400)));
   EXPECT_TRUE(covers(motion, at_ms(3400)));
   EXPECT_FALSE(covers(motion, at_ms(3600)));
-  const std::vector<DrawnFrame> no_frames;
+  const std::vector<MeasuredFrame> no_frames;
   SmoothedMotion none(no_frames, {});
   none.select(at_ms(0), at_ms(1000));
   EXPECT_FALSE(covers(none, at_ms(500)));

@@ -1,4 +1,4 @@
-#include "platform/tools/programming/drawn_frames.hpp"
+#include "platform/tools/programming/measured_frames.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -7,10 +7,11 @@
 
 namespace glint {
 
-DrawnFrames::DrawnFrames(std::size_t tool, double stamp_sigma_s, std::function<bool(Time)> wanted)
+MeasuredFrames::MeasuredFrames(std::size_t tool, double stamp_sigma_s,
+                               std::function<bool(Time)> wanted)
     : tool_(tool), stamp_sigma_s_(stamp_sigma_s), wanted_(std::move(wanted)) {}
 
-void DrawnFrames::add(const TrackedFrame& tracked, const RobotFrame& robot) {
+void MeasuredFrames::add(const TrackedFrame& tracked, const RobotFrame& robot) {
   const Estimates& estimates = *tracked.estimates;
   if (tool_ >= static_cast<std::size_t>(std::max(tracked.tools->count, 0)) ||
       !estimates.verdict.usable()) {
@@ -32,7 +33,7 @@ void DrawnFrames::add(const TrackedFrame& tracked, const RobotFrame& robot) {
   }
   const Tool& shape = tracked.tools->items[tool_];
   const Time time = estimates.verdict.stamp.mid_exposure;
-  DrawnFrame drawn;
+  MeasuredFrame drawn;
   drawn.frame.measured = in_base(filter_measurement_of(found, shape, time), head);
   drawn.base = head.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
   drawn.restarts = restarts_ || found.contradicts_track || drawn.base != base_;

@@ -14,7 +14,7 @@
 
 namespace glint {
 
-struct DrawnFrame {
+struct MeasuredFrame {
   StrokeFrame frame;
   bool restarts = false;   // the tracker restarted its estimate: earlier frames are unrelated
   int frames_without = 0;  // usable frames since the previous measured one, without a pose
@@ -28,23 +28,23 @@ struct DrawnFrame {
   TipPosition tip;
 };
 
-class DrawnFrames {
+class MeasuredFrames {
  public:
   // stamp_sigma_s: standard deviation of mid-exposure, beside the frame's own. `wanted`: whether a
   // frame of this time is kept; empty: all are.
-  DrawnFrames(std::size_t tool, double stamp_sigma_s, std::function<bool(Time)> wanted = {});
+  MeasuredFrames(std::size_t tool, double stamp_sigma_s, std::function<bool(Time)> wanted = {});
 
   // Requires all frames in the order of processing.
   void add(const TrackedFrame& tracked, const RobotFrame& robot);
 
   // In rising order of time stamps, apart from restarts.
-  [[nodiscard]] const std::vector<DrawnFrame>& frames() const { return frames_; }
+  [[nodiscard]] const std::vector<MeasuredFrame>& frames() const { return frames_; }
 
  private:
   std::size_t tool_;
   double stamp_sigma_s_;
   std::function<bool(Time)> wanted_;
-  std::vector<DrawnFrame> frames_;
+  std::vector<MeasuredFrame> frames_;
   // Since the last measured frame.
   bool restarts_ = true;
   int frames_without_ = 0;
