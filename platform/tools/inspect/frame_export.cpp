@@ -4,7 +4,6 @@
 #include <map>
 #include <utility>
 
-#include "kernels/pose/lever_arm.hpp"
 #include "platform/input_error.hpp"
 #include "platform/sim/simulator.hpp"
 #include "platform/sinks/record/trajectory_files.hpp"
@@ -12,52 +11,6 @@
 
 namespace glint {
 namespace {
-
-Pose with_origin(const Pose& T_frame_tool, const Tool& tool, PoseOrigin origin) {
-  if (origin == PoseOrigin::tool) return T_frame_tool;
-  return {T_frame_tool.rotation, T_frame_tool * tool.tip_m};
-}
-
-// Covariance of the exported pose: translation of its origin, rotation about the frame's axes.
-Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& tool,
-                      PoseOrigin origin) {
-  TipPosition tip = tip_of(tool);
-  if (origin == PoseOrigin::tool) tip.sigma_m = 0;  // no tip error in the tool's origin
-  Matrix6 covariance = tip_covariance(track, fit, tip);
-  if (origin == PoseOrigin::tool) {
-    covariance = moved_covariance(covariance, track.T_camera_tool.rotation * (-tool.tip_m));
-  }
-  if (track.base != ReferenceFrame::world) return covariance;
-  const Quaternion world_camera =
-      track.newest.pose.rotation * track.T_camera_tool.rotation.conjugate();
-  // head_covariance refers to the centroid of the markers.
-  const Vector3 to = (origin == PoseOrigin::tip ? tool.tip_m : Vector3(Vector3::Zero()));
-  return rotated_covariance(covariance, world_camera) +
-         moved_covariance(track.head_covariance,
-                          track.newest.pose.rotation * (to - tool.middle_m()));
-}
-
-FramePose frame_pose(const ArrivedFrame& arrived, Tracker& tracker, const Tool& tool, std::size_t t,
-                     PoseOrigin origin) {
-  const Track& track = tracker.output<Estimates>().tracks[t];
-  FramePose pose;
-  pose.time = arrived.frame.mid_exposure;
-  pose.sequence = arrived.frame.sequence;
-  pose.tool = tool.name.data();
-  pose.reason = track.reason;
-  pose.state = track.measured_now                  ? TrackState::measured
-               : track.alive && !track.unconfirmed ? TrackState::predicted
-                                                   : TrackState::lost;
-  if (!track.measured_now) return pose;
-  const FittedTool& fit =
-      tracker.parts<FittedTools>(static_cast<int>(t) % k_tool_partitions).tools[t];
-  pose.frame = track.base;
-  pose.marker_mask = track.marker_mask;
-  pose.rms_m = track.rms_m;
-  pose.pose = with_origin(track.newest.pose, tool, origin);
-  pose.covariance = covariance_of(fit, track, tool, origin);
-  return pose;
-}
 
 bool same_position(const HeadPose& one, const HeadPose& other) {
   constexpr double k_rounding_m = 1e-9;
@@ -128,7 +81,7 @@ ExportedRows export_csv(RecordedFrames& recorded, const std::vector<std::size_t>
       track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
         for (const std::size_t t : tools) {
           const Tool& tool = recorded.cell.tools.items[t];
-          out(frame_pose_line(frame_pose(arrived, tracker, tool, t, origin)));
+          out(frame_pose_line(frame_pose(arrived.frame, tracker, tool, t, origin)));
           ++rows.rows;
         }
       });

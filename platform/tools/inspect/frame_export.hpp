@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "kernels/wire/pose_sample.hpp"
+#include "platform/runtime/session/frame_pose.hpp"
 #include "platform/tools/inspect/recorded_frames.hpp"
 
 namespace glint {
 
 using LineOut = std::function<void(std::string_view)>;  // line without newline; may throw
-
-enum class PoseOrigin { tool, tip };
 
 struct PoseExport {
   std::size_t tool = 0;                          // index in the cell
