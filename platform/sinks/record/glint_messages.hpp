@@ -1,4 +1,4 @@
-// Serialisation of Glint's own messages (package glint_msgs, fields in schemas.cpp).
+// Serialisation of Glint's own messages (package platform/sinks/dds/glint_msgs).
 //
 // write_message() starts a message in the writer. A read function returns nothing if the bytes do
 // not match the type: too short, a count beyond the maximum, a rectangle outside its frame.
