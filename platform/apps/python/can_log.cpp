@@ -1,6 +1,6 @@
 #include "platform/apps/python/can_log.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <fstream>
@@ -78,7 +78,7 @@ class ToolSets {
     row_.complete = row_.checksum_ok && (fd_ || offsets_ == k_all_offsets);
     row_.counter = counter_.value_or(0);
     row_.tick = next_tick();
-    row_.lost = last_ ? static_cast<std::uint32_t>(row_.tick - last_->tick - 1) : 0;
+    row_.lost = last_ ? row_.tick - last_->tick - 1 : 0;
     last_ = Last{row_.tick, row_.unix_ns, counter_};
     rows.push_back(row_);
     counter_.reset();

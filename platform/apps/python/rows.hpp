@@ -85,8 +85,7 @@ struct DroppedRow {
 };
 
 struct CanPoseRow {
-  std::int64_t unix_ns, tick;
-  std::uint32_t lost;
+  std::int64_t unix_ns, tick, lost;
   std::uint8_t tool, counter, state, registration, markers, buttons;
   bool valid, complete, checksum_ok;
   double position_m[3], orientation_xyzw[4];
