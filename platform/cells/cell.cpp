@@ -66,6 +66,9 @@ void CellParser::read_source(const toml::table* table) {
     cell.source.domain = static_cast<int>(reader.integer("domain", 0, 0, 232));
   }
   cell.source.reliable = reader.boolean("reliable", false);
+  cell.source.host = reader.text("host", "");
+  cell.source.port = static_cast<int>(reader.integer("port", cell.source.port, 1, 65535));
+  cell.source.divisor = static_cast<int>(reader.integer("divisor", cell.source.divisor, 1, 255));
   cell.source.position = cell.file + ":" + std::to_string(reader.line_of("kind")) + ": source";
   reader.done();
   const auto of_kinds = [&](std::initializer_list<const char*> kinds,
@@ -82,13 +85,16 @@ void CellParser::read_source(const toml::table* table) {
                        printable(cell.source.kind));
     }
   };
-  of_kinds({"hl2ss_file"}, {"calibration"});
+  of_kinds({"hl2ss_file", "hl2ss"}, {"calibration"});
+  of_kinds({"hl2ss"}, {"host", "port", "divisor"});
   of_kinds({"dds", "rosbag"},
            {"reflectivity_topic", "depth_topic", "camera_info_topic", "pose_topic", "world_frame"});
   of_kinds({"dds"}, {"domain", "reliable"});
-  if (cell.source.kind == "dds" && table->contains("path")) {
+  const bool over_network = cell.source.kind == "dds" || cell.source.kind == "hl2ss";
+  if (over_network && table->contains("path")) {
     throw InputError(cell.file + ":" + std::to_string(reader.line_of("path")) +
-                     ": source.path: not used by dds; expected topics");
+                     ": source.path: not used by " + cell.source.kind + "; expected " +
+                     (cell.source.kind == "dds" ? "topics" : "host"));
   }
 }
 

@@ -62,11 +62,14 @@ struct SourceSettings {
   std::string kind = "simulator";  // or a kind of platform/sources
   std::string path;                // its file or folder
   std::string position;            // position in the cell file, for messages
-  std::string calibration;         // hl2ss_file: its calibration; empty: no head pose
+  std::string calibration;         // hl2ss_file, hl2ss: a file; empty: no head pose; downloaded
   // dds and rosbag. Empty: selected from the bag's topics; no pose topic.
   std::string reflectivity_topic, depth_topic, camera_info_topic, pose_topic, world_frame;
   std::optional<int> domain;  // dds; empty: that of [dds]
   bool reliable = false;      // dds: requests lost messages again
+  std::string host;           // hl2ss: address or name of the headset
+  int port = 3804;            // hl2ss: of its AHAT stream
+  int divisor = 1;            // hl2ss: one of that many frames is sent
 };
 
 // Source of simulated frames; the other parameters of the simulator have one declared default.

@@ -237,6 +237,12 @@ std::size_t hl2ss_calibration_bytes(const CameraModel& model, bool alias) {
   return (4 * pixels_of(model) + k_hl2ss_extrinsics + 1 + (alias ? 1 : 0) + 4) * sizeof(float);
 }
 
+std::vector<float> rays_of_hl2ss_calibration(std::span<const std::uint8_t> bytes,
+                                             const CameraModel& model) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return rays_of_planes(floats_of(text), pixels_of(model));
+}
+
 Camera with_ray_table(Camera camera, const std::string& path) {
   return with_rays(std::move(camera), rays_of_file(path, camera.model, camera.name), path);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,5 +68,8 @@ struct Camera {
 // extrinsics, scale, alias (wrapped ranges only), a map of two planes, 4 of the undistorted image.
 inline constexpr std::size_t k_hl2ss_extrinsics = 16;
 [[nodiscard]] std::size_t hl2ss_calibration_bytes(const CameraModel& model, bool alias);
+// Returns its unit rays, 3 numbers per pixel. Requires one of the sizes above.
+[[nodiscard]] std::vector<float> rays_of_hl2ss_calibration(std::span<const std::uint8_t> bytes,
+                                                           const CameraModel& model);
 
 }  // namespace glint

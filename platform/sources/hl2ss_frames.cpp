@@ -1,7 +1,6 @@
 #include "platform/sources/hl2ss_frames.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <span>
 #include <string_view>
@@ -13,27 +12,13 @@
 #include "platform/printable.hpp"
 #include "platform/read_file.hpp"
 #include "platform/sources/file_time.hpp"
-#include "platform/sources/matrix_pose.hpp"
+#include "platform/sources/hl2ss_wire.hpp"
 
 namespace glint {
 namespace {
 
 constexpr std::string_view k_magic = "HL2SSV23";
-constexpr std::uint16_t k_port_ahat = 3804, k_port_long_throw = 3805;
-constexpr std::uint8_t k_profile_raw = 255, k_profile_z_same = 0;
-constexpr std::uint64_t k_packet_heading = 12;  // stamp, size of the payload
-constexpr std::uint64_t k_pose_bytes = 64;
-constexpr std::uint64_t k_ahat_heading = 8, k_sensor_ticks = 8;
 constexpr std::uint64_t k_packet_bytes_max = 64 << 20;
-
-// Reads 16 floats of a matrix for row vectors: p' = p M.
-MatrixNumbers matrix_at(const std::uint8_t* from) {
-  std::array<float, 16> floats;
-  std::memcpy(floats.data(), from, sizeof floats);
-  MatrixNumbers numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = double{floats[i]};
-  return transposed(numbers);
-}
 
 }  // namespace
 
@@ -55,8 +40,8 @@ void Hl2ssFrames::read_beginning() {
   ByteReader reader(std::span<const std::uint8_t>(bytes).subspan(k_magic.size()));
   const auto port = reader.number<std::uint16_t>();
   at_ = fixed + reader.number<std::uint32_t>();
-  long_throw_ = port == k_port_long_throw;
-  if (port != k_port_ahat && !long_throw_) {
+  long_throw_ = port == k_hl2ss_port_long_throw;
+  if (port != k_hl2ss_port_ahat && !long_throw_) {
     file_.refuse(k_magic.size(), "the stream of port " + std::to_string(port),
                  "3804 (depth AHAT) or 3805 (depth long throw)");
   }
@@ -73,7 +58,7 @@ void Hl2ssFrames::read_beginning() {
   }
   with_pose_ = bytes[0] == 1;
   if (long_throw_) return;
-  if (bytes[2] != k_profile_z_same || bytes[3] != k_profile_raw) {
+  if (bytes[2] != k_hl2ss_profile_z_same || bytes[3] != k_hl2ss_profile_raw) {
     file_.refuse(begin + 2,
                  "profiles " + std::to_string(bytes[2]) + " and " + std::to_string(bytes[3]) +
                      ": compressed frames",
@@ -85,21 +70,7 @@ void Hl2ssFrames::read_beginning() {
 void Hl2ssFrames::read_calibration() {
   const std::string bytes =
       read_file(source_.calibration, k_data_bytes_max, "hl2ss's calibration of the device");
-  const std::size_t expected = hl2ss_calibration_bytes(camera_.model, !long_throw_);
-  const std::size_t pixels = static_cast<std::size_t>(camera_.model.width) *
-                             static_cast<std::size_t>(camera_.model.height);
-  if (bytes.size() != expected) {
-    throw InputError(source_.calibration + ": " + std::to_string(bytes.size()) +
-                     " bytes; expected " + std::to_string(expected) + ", the size for " +
-                     camera_.name);
-  }
-  const auto* extrinsics = reinterpret_cast<const std::uint8_t*>(bytes.data()) + 8 * pixels;
-  const std::optional<Pose> T_camera_rig = pose_of_matrix(matrix_at(extrinsics));
-  if (!T_camera_rig) {
-    throw InputError(source_.calibration + ":byte " + std::to_string(8 * pixels) +
-                     ": not a rigid transform; expected rig to camera, for row vectors");
-  }
-  T_rig_camera_ = T_camera_rig->inverse();
+  T_rig_camera_ = hl2ss_rig_camera(bytes_of(bytes), camera_, !long_throw_, source_.calibration);
 }
 
 std::optional<SourceLens> Hl2ssFrames::lens() const {
@@ -110,15 +81,15 @@ std::optional<SourceLens> Hl2ssFrames::lens() const {
 bool Hl2ssFrames::next(ReadFrame& frame) {
   while (at_ < file_.size()) {
     const std::uint64_t begin = at_, left = file_.size() - begin;
-    const std::uint64_t pose = with_pose_ ? k_pose_bytes : 0;
-    std::uint64_t whole = k_packet_heading;
+    const std::uint64_t pose = with_pose_ ? k_hl2ss_pose_bytes : 0;
+    std::uint64_t whole = k_hl2ss_heading_bytes;
     std::uint32_t payload = 0;
-    if (left >= k_packet_heading) {
-      file_.read(begin, k_packet_heading, packet_);
-      ByteReader heading(packet_);
+    if (left >= k_hl2ss_heading_bytes) {
+      file_.read(begin, k_hl2ss_heading_bytes, packet_);
+      const Hl2ssHeading heading = hl2ss_heading(std::span(packet_).first<k_hl2ss_heading_bytes>());
       frame = ReadFrame{};
-      frame.mid_exposure = time_of_file_time(heading.number<std::uint64_t>());
-      payload = heading.number<std::uint32_t>();
+      frame.mid_exposure = time_of_file_time(heading.stamp);
+      payload = heading.payload_bytes;
       whole += payload + pose;
     }
     if (left < whole || payload > k_packet_bytes_max) {
@@ -130,9 +101,9 @@ bool Hl2ssFrames::next(ReadFrame& frame) {
     at_ = begin + whole;
     try {
       const std::uint64_t empty = empty_;
-      read_packet(begin + k_packet_heading, payload, frame);
+      read_packet(begin + k_hl2ss_heading_bytes, payload, frame);
       if (empty_ != empty) continue;
-      if (with_pose_) put_head_pose(at_ - k_pose_bytes, frame);
+      if (with_pose_) put_head_pose(at_ - k_hl2ss_pose_bytes, frame);
       return true;
     } catch (const InputError& error) {
       if (unreadable_++ == 0) first_unreadable_ = error.what();
@@ -158,23 +129,22 @@ void Hl2ssFrames::read_packet(std::uint64_t at, std::uint32_t bytes, ReadFrame& 
   };
   std::vector<std::uint8_t> planes;
   if (!long_throw_) {
-    ByteReader reader(packet_);
-    const auto z_bytes = reader.number<std::uint32_t>(), ab_bytes = reader.number<std::uint32_t>();
-    if (!reader.failed() && ab_bytes == 0) {  // the server had no frame
+    const AhatPayload ahat = hl2ss_ahat(packet_, plane_bytes / 2);
+    if (ahat.contents == AhatContents::empty) {
       ++empty_;
       return;
     }
-    if (bytes != k_ahat_heading + z_bytes + ab_bytes + k_sensor_ticks || z_bytes != 0 ||
-        ab_bytes != 2 * plane_bytes) {
-      refuse(
-          "a frame of " + std::to_string(z_bytes) + " and " + std::to_string(ab_bytes) + " bytes",
-          "0 and " + std::to_string(2 * plane_bytes));
+    if (ahat.contents == AhatContents::wrong_size) {
+      refuse("a frame of " + std::to_string(ahat.z_bytes) + " and " +
+                 std::to_string(ahat.ab_bytes) + " bytes",
+             "0 and " + std::to_string(2 * plane_bytes));
     }
-    planes.assign(packet_.begin() + k_ahat_heading, packet_.end() - k_sensor_ticks);
+    planes.assign(ahat.depth.data(), ahat.depth.data() + 2 * plane_bytes);
   } else {
-    if (bytes <= k_sensor_ticks) refuse(std::to_string(bytes) + " bytes", "a PNG image");
+    if (bytes <= k_hl2ss_sensor_ticks_bytes)
+      refuse(std::to_string(bytes) + " bytes", "a PNG image");
     const std::string_view png(reinterpret_cast<const char*>(packet_.data()),
-                               bytes - k_sensor_ticks);
+                               bytes - k_hl2ss_sensor_ticks_bytes);
     const Image picture =
         png_of(png, file_.path() + ":byte " + std::to_string(at), "a PNG image", true);
     if (picture.channels != 4 || picture.bits != 8 || picture.values.size() != 2 * plane_bytes) {
@@ -196,8 +166,8 @@ void Hl2ssFrames::read_packet(std::uint64_t at, std::uint32_t bytes, ReadFrame& 
 void Hl2ssFrames::put_head_pose(std::uint64_t at, ReadFrame& frame) const {
   if (!T_rig_camera_) return;
   Bytes bytes;
-  file_.read(at, k_pose_bytes, bytes);
-  const std::optional<Pose> T_world_rig = pose_of_matrix(matrix_at(bytes.data()));
+  file_.read(at, k_hl2ss_pose_bytes, bytes);
+  const std::optional<Pose> T_world_rig = hl2ss_pose(std::span(bytes).first<k_hl2ss_pose_bytes>());
   if (!T_world_rig) return;
   frame.head.valid = true;
   frame.head.T_world_camera = *T_world_rig * *T_rig_camera_;

@@ -19,6 +19,8 @@ namespace glint {
 inline constexpr std::size_t k_live_frames = 8;  // capacity of frames that wait for the tracker
 // Period of checks for the end of a run.
 inline constexpr Duration k_live_poll = milliseconds(50);
+// Largest magnitude of a stamp: the difference of two fits into 64 bits.
+inline constexpr std::int64_t k_live_stamp_max_ns = 4'000'000'000'000'000'000;
 
 struct LiveSettings {
   Duration duration;                        // of the run; 0: until it is stopped

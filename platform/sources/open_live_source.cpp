@@ -5,6 +5,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/sources/dds_source.hpp"
+#include "platform/sources/hl2ss_source.hpp"
 #include "platform/sources/shm_source.hpp"
 
 namespace glint {
@@ -19,6 +20,10 @@ constexpr std::array k_live_kind_list = {
     LiveKind{"dds",
              [](Cell& cell, LiveSettings live) -> std::unique_ptr<LiveSource> {
                return DdsSource::open(cell, live);
+             }},
+    LiveKind{"hl2ss",
+             [](Cell& cell, LiveSettings live) -> std::unique_ptr<LiveSource> {
+               return Hl2ssSource::open(cell, live);
              }},
     LiveKind{"shm", [](Cell& cell, LiveSettings live) -> std::unique_ptr<LiveSource> {
                if (cell.source.path.empty()) {

@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Returns "dds, shm".
+// Returns "dds, hl2ss, shm".
 [[nodiscard]] std::string live_kinds();
 
 // Opens the live source named by `[source]`; null for other kinds. The cell takes the lens of the

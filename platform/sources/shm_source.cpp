@@ -17,6 +17,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/runtime/rt/clock.hpp"
+#include "platform/sinks/can/descriptor.hpp"
 #include "platform/sources/glint_frames.h"
 
 namespace glint {
@@ -25,25 +26,6 @@ namespace {
 constexpr std::uint32_t k_slots_max = 64;  // per producer
 
 constexpr Duration k_hello_within = milliseconds(1000);
-
-constexpr std::int64_t k_stamp_max_ns = 4'000'000'000'000'000'000;  // the difference of two fits
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 class Mapping {
  public:
@@ -268,8 +250,8 @@ void ShmSource::take_frame(Producer& producer, const void* message) {
   glint_frames_frame frame;
   std::memcpy(&frame, message, sizeof frame);
   const Time arrival = monotonic_now();
-  if (frame.slot >= producer.slots || frame.stamp_ns > k_stamp_max_ns ||
-      frame.stamp_ns < -k_stamp_max_ns) {
+  if (frame.slot >= producer.slots || frame.stamp_ns > k_live_stamp_max_ns ||
+      frame.stamp_ns < -k_live_stamp_max_ns) {
     ++malformed_;
     return;
   }

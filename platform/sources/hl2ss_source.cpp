@@ -1,0 +1,330 @@
+#include "platform/sources/hl2ss_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
+#include "platform/runtime/rt/clock.hpp"
+#include "platform/sources/file_time.hpp"
+#include "platform/sources/hl2ss_wire.hpp"
+
+namespace glint {
+namespace {
+
+constexpr Duration k_peer_wait = milliseconds(5000);  // for the server at the start
+constexpr Duration k_connect_limit = milliseconds(1000);
+constexpr Duration k_attempt_gap = milliseconds(500);   // between two attempts to connect
+constexpr Duration k_silence_max = milliseconds(2000);  // without a byte; then connect again
+constexpr Duration k_gap_max = milliseconds(60'000);    // longer gaps are of another clock
+constexpr int k_stall_gaps = 12;                        // nominal gaps without a packet
+constexpr int k_receptions_max = 64;                    // per reading of the clock
+constexpr double k_rate_hz = 45;                        // AHAT
+constexpr std::array<std::uint8_t, 1> k_calibration_request = {2};
+
+// mode 1 (with pose), divisor, profiles, level (default), u32 bit rate, no options
+std::array<std::uint8_t, 10> stream_request(int divisor) {
+  return {1,
+          static_cast<std::uint8_t>(divisor),
+          k_hl2ss_profile_z_same,
+          k_hl2ss_profile_raw,
+          255,
+          0,
+          0,
+          0,
+          0,
+          0};
+}
+
+std::size_t pixels_of(const Camera& camera) {
+  return static_cast<std::size_t>(camera.model.width) *
+         static_cast<std::size_t>(camera.model.height);
+}
+
+std::size_t packet_bytes_max(const Camera& camera) {
+  return k_hl2ss_heading_bytes + hl2ss_ahat_bytes(pixels_of(camera)) + k_hl2ss_pose_bytes;
+}
+
+std::string rate_text(const Camera& camera, int divisor) {
+  char text[64];
+  const double bits = 8.0 * static_cast<double>(packet_bytes_max(camera));
+  std::snprintf(text, sizeof text, "divisor %d, %.1f Mbit/s expected", divisor,
+                1e-6 * bits * k_rate_hz / divisor);
+  return text;
+}
+
+void require_ahat(const Cell& cell) {
+  const Camera ahat = hololens2_ahat();
+  const Camera& camera = cell.camera;
+  if (camera.model.width == ahat.model.width && camera.model.height == ahat.model.height &&
+      camera.reflectivity_bits == ahat.reflectivity_bits) {
+    return;
+  }
+  throw InputError(cell.source.position + ".kind: hl2ss sends AHAT frames, the camera is " +
+                   camera.name + "; expected " + ahat.name);
+}
+
+// Repeats `attempt`, which returns an optional and takes the reason of a failure.
+template <class Attempt>
+auto repeated(const TcpPeer& peer, const std::atomic<bool>* stop, const char* expected,
+              Attempt attempt) {
+  const Time end = monotonic_now() + k_peer_wait;
+  std::string why = "no answer";
+  for (;;) {
+    auto result = attempt(why);
+    if (result) return std::move(*result);
+    const Time next = monotonic_now() + k_attempt_gap;
+    if (next > end || (stop != nullptr && *stop)) break;
+    (void)sleep_until(next);
+  }
+  throw MissingDevice(peer.name + ": " + why + ", for " +
+                      std::to_string(k_peer_wait.nanoseconds / 1'000'000'000) + " s; expected " +
+                      expected);
+}
+
+std::optional<Bytes> downloaded(const TcpPeer& peer, std::size_t bytes, std::string& why) {
+  const auto connection = tcp_connect(peer, k_connect_limit, k_calibration_request, why);
+  if (!connection) return std::nullopt;
+  Bytes calibration(bytes);
+  std::size_t filled = 0;
+  Time last = monotonic_now();
+  while (filled < bytes) {
+    tcp_wait(connection->get(), k_live_poll);
+    const auto got = tcp_receive(connection->get(), std::span(calibration).subspan(filled), why);
+    if (got && *got > 0) {
+      filled += *got;
+      last = monotonic_now();
+    } else if (!got || monotonic_now() - last > k_silence_max) {
+      why = "the calibration ends after " + std::to_string(filled) + " of " +
+            std::to_string(bytes) + " bytes";
+      return std::nullopt;
+    }
+  }
+  return calibration;
+}
+
+}  // namespace
+
+std::unique_ptr<Hl2ssSource> Hl2ssSource::open(Cell& cell, LiveSettings live) {
+  const SourceSettings& source = cell.source;
+  if (source.host.empty()) {
+    throw InputError(source.position + ".host: missing; expected the address of a headset");
+  }
+  require_ahat(cell);
+  const TcpPeer peer = tcp_peer(source.host, source.port);
+  std::printf("hl2ss %s: %s\n", printable(peer.name).c_str(),
+              rate_text(cell.camera, source.divisor).c_str());
+  std::fflush(stdout);
+  std::string name = source.calibration;
+  Bytes calibration;
+  if (name.empty()) {
+    name = peer.name + ", calibration";
+    const std::size_t bytes = hl2ss_calibration_bytes(cell.camera.model, true);
+    calibration = repeated(peer, live.stop, "the calibration of hl2ss's AHAT stream",
+                           [&](std::string& why) { return downloaded(peer, bytes, why); });
+  } else {
+    const std::string text = read_file(name, k_data_bytes_max, "hl2ss's calibration of the device");
+    calibration.assign(text.begin(), text.end());
+  }
+  const Pose T_rig_camera = hl2ss_rig_camera(calibration, cell.camera, true, name);
+  if (!names_lens(cell)) {
+    std::vector<float> rays = rays_of_hl2ss_calibration(calibration, cell.camera.model);
+    set_lens(cell, {name, *with_rays(cell.camera, std::move(rays), name).table, {}});
+  }
+  require_lens(cell);
+  const auto request = stream_request(source.divisor);
+  Descriptor connection = repeated(peer, live.stop, "hl2ss's AHAT stream", [&](std::string& why) {
+    return tcp_connect(peer, k_connect_limit, request, why);
+  });
+  return std::unique_ptr<Hl2ssSource>(
+      new Hl2ssSource(peer, std::move(connection), T_rig_camera, cell, live));
+}
+
+Hl2ssSource::Hl2ssSource(TcpPeer peer, Descriptor connection, const Pose& T_rig_camera,
+                         const Cell& cell, LiveSettings live)
+    : LiveSource(cell.camera, live),
+      peer_(std::move(peer)),
+      divisor_(cell.source.divisor),
+      T_rig_camera_(T_rig_camera),
+      packet_(packet_bytes_max(cell.camera)),
+      newest_stamp_{INT64_MIN} {
+  connection_.emplace(std::move(connection));
+  begin_connection();
+  thread_ = std::thread([this] { run(); });
+}
+
+Hl2ssSource::~Hl2ssSource() { stop(); }
+
+void Hl2ssSource::stop() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void Hl2ssSource::run() noexcept {
+  while (!stop_) {
+    if (!connection_) {
+      connect_again();
+      continue;
+    }
+    tcp_wait(connection_->get(), k_live_poll);
+    receive();
+  }
+}
+
+void Hl2ssSource::connect_again() {
+  const Time now = monotonic_now();
+  if (now < next_attempt_) {
+    (void)sleep_until(std::min(next_attempt_, now + k_live_poll));
+    return;
+  }
+  next_attempt_ = now + k_attempt_gap;
+  std::string why;
+  auto connection = tcp_connect(peer_, k_connect_limit, stream_request(divisor_), why);
+  if (!connection) return;
+  connection_.emplace(std::move(*connection));
+  begin_connection();
+}
+
+void Hl2ssSource::begin_connection() {
+  ++connections_;
+  filled_ = 0;
+  wanted_ = k_hl2ss_heading_bytes;
+  first_packet_ = true;
+  last_byte_ = last_packet_ = monotonic_now();
+  next_attempt_ = last_byte_ + k_attempt_gap;
+}
+
+void Hl2ssSource::lose_connection(const std::string& why) {
+  if (lost_++ == 0) first_loss_ = why;
+  truncated_ += filled_ > 0 && filled_ < wanted_ ? 1 : 0;
+  connection_.reset();
+}
+
+void Hl2ssSource::receive() {
+  for (int reception = 0; reception < k_receptions_max && connection_; ++reception) {
+    std::string why;
+    const auto got = tcp_receive(connection_->get(),
+                                 std::span(packet_).subspan(filled_, wanted_ - filled_), why);
+    if (!got) return lose_connection(why);
+    if (*got == 0) {
+      if (monotonic_now() - last_byte_ > k_silence_max) lose_connection("no byte for 2 s");
+      return;
+    }
+    last_byte_ = monotonic_now();
+    filled_ += *got;
+    if (filled_ == wanted_ && !complete_part()) return;
+  }
+}
+
+// Returns false at the end of a packet, so that the thread reads its flags.
+bool Hl2ssSource::complete_part() {
+  if (wanted_ > k_hl2ss_heading_bytes) {
+    take_packet();
+    filled_ = 0;
+    wanted_ = k_hl2ss_heading_bytes;
+    return false;
+  }
+  const auto heading = hl2ss_heading(std::span(packet_).first<k_hl2ss_heading_bytes>());
+  const std::size_t bytes_max = hl2ss_ahat_bytes(pixels_of(camera()));
+  if (heading.payload_bytes > bytes_max) {  // the next packet cannot be found
+    ++oversize_;
+    name_malformed("a payload of " + std::to_string(heading.payload_bytes) +
+                   " bytes; expected at most " + std::to_string(bytes_max));
+    lose_connection("a packet too large");
+    return false;
+  }
+  wanted_ = k_hl2ss_heading_bytes + heading.payload_bytes + k_hl2ss_pose_bytes;
+  return true;
+}
+
+void Hl2ssSource::name_malformed(const std::string& what) {
+  if (first_malformed_.empty()) first_malformed_ = what;
+}
+
+void Hl2ssSource::count_gap(Time stamp, Time arrival) {
+  const Duration nominal{static_cast<std::int64_t>(1e9 * divisor_ / k_rate_hz)};
+  stalls_ += (arrival - last_packet_).seconds() > k_stall_gaps * nominal.seconds() ? 1 : 0;
+  last_packet_ = arrival;
+  if (newest_stamp_.nanoseconds == INT64_MIN || stamp <= newest_stamp_) return;
+  const Duration gap = stamp - newest_stamp_;
+  if (gap > k_gap_max) return;
+  const auto frames = std::llround(gap.seconds() / nominal.seconds());
+  missing_ += frames > 1 ? static_cast<std::uint64_t>(frames - 1) : 0;
+}
+
+void Hl2ssSource::take_packet() {
+  const Time arrival = monotonic_now();
+  const std::span<const std::uint8_t> bytes(packet_.data(), wanted_);
+  const auto heading = hl2ss_heading(bytes.first<k_hl2ss_heading_bytes>());
+  const AhatPayload payload =
+      hl2ss_ahat(bytes.subspan(k_hl2ss_heading_bytes, heading.payload_bytes), pixels_of(camera()));
+  ++packets_;
+  if (payload.contents == AhatContents::empty) {
+    ++empty_;
+    return;
+  }
+  if (payload.contents == AhatContents::wrong_size) {
+    ++wrong_size_;
+    return name_malformed("a frame of " + std::to_string(payload.z_bytes) + " and " +
+                          std::to_string(payload.ab_bytes) + " bytes; expected 0 and " +
+                          std::to_string(4 * pixels_of(camera())));
+  }
+  const Time stamp = time_of_file_time(heading.stamp);
+  if (stamp.nanoseconds > k_live_stamp_max_ns) {
+    ++stamps_out_of_range_;
+    return;
+  }
+  // The counter restarts with the device; a connection that was lost keeps it.
+  if (std::exchange(first_packet_, false) && stamp < newest_stamp_) {
+    restart_clock();
+    newest_stamp_ = {INT64_MIN};
+  }
+  count_gap(stamp, arrival);
+  if (!accept_rising(stamp, newest_stamp_)) return;
+  const std::optional<Time> exposure = exposure_of(stamp, arrival);
+  if (!exposure) return;
+  Slot* const slot = free_slot();
+  if (slot == nullptr) return drop();
+  std::memcpy(slot->pixels.depth.data(), payload.depth.data(), payload.depth.size());
+  std::memcpy(slot->pixels.reflectivity_16.data(), payload.reflectivity.data(),
+              payload.reflectivity.size());
+  HeadPose head;
+  if (const auto T_world_rig = hl2ss_pose(bytes.last<k_hl2ss_pose_bytes>())) {
+    head.valid = true;
+    head.T_world_camera = *T_world_rig * T_rig_camera_;
+  }
+  publish(*exposure, arrival, head);
+}
+
+SourceReport Hl2ssSource::report() {
+  stop();
+  SourceReport report;
+  report.text = "hl2ss " + printable(peer_.name) + ": " + rate_text(camera(), divisor_) +
+                (packets_ == 0 ? ": no packet received" : "");
+  report.counts = {{"packets", packets_},
+                   {"connections", connections_},
+                   {"connections_lost", lost_},
+                   {"stalls", stalls_},
+                   {"frames_missing", missing_},
+                   {"packets_without_frame", empty_},
+                   {"packets_of_wrong_size", wrong_size_},
+                   {"packets_oversize", oversize_},
+                   {"packets_truncated", truncated_},
+                   {"stamps_out_of_range", stamps_out_of_range_}};
+  add_to(report);
+  if (lost_ > 0) {
+    report.failures.push_back(std::to_string(lost_) + " connections to " + peer_.name +
+                              " lost, the first: " + first_loss_);
+  }
+  if (!first_malformed_.empty()) {
+    report.failures.push_back(std::to_string(wrong_size_ + oversize_) +
+                              " packets of another size, the first: " + first_malformed_);
+  }
+  return report;
+}
+
+}  // namespace glint
