@@ -92,7 +92,7 @@ class Play:
     latency_ms: float = 9.0          # from the stamp to the first byte, at least
     faults: dict = dataclasses.field(default_factory=dict)  # kind by the packet's number
     stall_s: float = 0.6
-    silence_s: float = 4.0
+    silence_s: float = 3.0
     random_seed: int = 1
     stamps_begin: int = 36_000_000_000  # QPC at the first packet: an hour after the device's start
     clock_offset: int = 133_800_000_000_000_000  # FILETIME - QPC
@@ -120,9 +120,13 @@ def with_fault(packet, kind, before):
 
 
 class Server:
-    """Serves until close(). `configurations` and `sent` record what the client did and received."""
+    """Serves until close(). `configurations` and `sent` record what the client did and received.
 
-    def __init__(self, packets, calibration=b"", play=None, port=0, remote_port=0):
+    Counts and faults begin with packet `begin`; None: good packets without an end, until it is set.
+    """
+
+    def __init__(self, packets, calibration=b"", play=None, port=0, remote_port=0, begin=0):
+        self.begin = begin
         self.packets, self.calibration, self.play = packets, calibration, play or Play()
         self.random = random.Random(self.play.random_seed)
         self.configurations, self.sent, self.number = [], [], 0
@@ -183,7 +187,7 @@ class Server:
         configuration += self.receive(client, 16 * configuration[9])
         self.configurations.append(configuration)
         while not self.closing.is_set():
-            if self.play.count is not None and self.number >= self.play.count:
+            if None not in (self.play.count, self.begin) and self.number - self.begin >= self.play.count:
                 self.finished.set()
                 self.closing.wait(0.05)
                 continue
@@ -205,7 +209,7 @@ class Server:
     def send_packet(self, client, with_pose, divisor):
         """False: the connection ends here."""
         number, play = self.number, self.play
-        kind = play.faults.get(number)
+        kind = None if self.begin is None else play.faults.get(number - self.begin)
         packet = self.packets[number % len(self.packets)]
         exposure = self.exposure_ns(divisor)
         delay_ms = play.latency_ms + self.random.uniform(*play.jitter_ms)

@@ -1,5 +1,7 @@
 """Live runs of `glint run` and their producers: for the tests of live sources."""
+import csv
 import json
+import math
 import os
 import signal
 import struct
@@ -7,6 +9,7 @@ import subprocess
 import sys
 import time
 
+TICK_NS = 4_000_000
 WAIT_S = 60  # for another process to go on, however busy the machine
 # As ROS 2 users set it for one machine; Glint has its own.
 CYCLONE = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
@@ -65,6 +68,26 @@ def ticks_in(path, state=","):
     """Ticks so far, of a file that is still written."""
     part = path.with_name(path.name + ".part")
     return sum(state in line for line in part.read_text().splitlines()[1:]) if part.exists() else 0
+
+
+def samples_of(out):
+    with open(out / "samples.csv") as file:
+        return {round(float(r["tick_s"]) * 1e9 / TICK_NS): r for r in csv.DictReader(file)}
+
+
+def largest_difference(live, again, shift):
+    """(m, ticks compared, poses of them measured): ticks of the same frame and state."""
+    largest, compared, measured = 0.0, 0, 0
+    for tick, a in live.items():
+        b = again.get(tick - shift)
+        if b is None or any(a[k] != b[k] for k in ("frame_sequence", "state")):
+            continue
+        if a["state"] in ("measured", "predicted"):
+            compared += 1
+            measured += a["state"] == "measured"
+            largest = max(largest, math.dist(*([float(r[k]) for k in ("x_m", "y_m", "z_m")]
+                                               for r in (a, b))))
+    return largest, compared, measured
 
 
 class DdsPublisher:

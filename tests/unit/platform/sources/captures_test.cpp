@@ -11,6 +11,7 @@
 #include "platform/input_error.hpp"
 #include "platform/sources/file_time.hpp"
 #include "platform/sources/hl2ss_frames.hpp"
+#include "platform/sources/hl2ss_wire.hpp"
 #include "platform/sources/matrix_pose.hpp"
 #include "platform/sources/stream_recorder_frames.hpp"
 #include "platform/sources/tar_file.hpp"
@@ -275,6 +276,27 @@ TEST_F(Hl2ssTest, TakesLensAndExtrinsicsOfTheCalibration) {
   EXPECT_EQ(lens.rays[17], 0.0f);
   settings.calibration = folder_.write("c.bin", bytes.substr(4));
   EXPECT_THROW(Hl2ssFrames(settings, tiny_camera()), InputError);
+}
+
+TEST_F(Hl2ssTest, AcceptsNoTruncatedPayload) {
+  constexpr std::size_t pixels = 6;
+  const std::string wire = packet(70, 4 * pixels);
+  const auto bytes = bytes_of(wire);
+  const Hl2ssHeading heading = hl2ss_heading(bytes.first<k_hl2ss_heading_bytes>());
+  EXPECT_EQ(heading.stamp, 70u);
+  ASSERT_EQ(heading.payload_bytes, hl2ss_ahat_bytes(pixels));
+  const auto payload = bytes.subspan(k_hl2ss_heading_bytes, heading.payload_bytes);
+  for (std::size_t size = 0; size < payload.size(); ++size) {
+    EXPECT_EQ(hl2ss_ahat(payload.first(size), pixels).contents, AhatContents::wrong_size) << size;
+  }
+  const AhatPayload whole = hl2ss_ahat(payload, pixels);
+  ASSERT_EQ(whole.contents, AhatContents::frame);
+  EXPECT_EQ(whole.depth.size(), 2 * pixels);
+  EXPECT_EQ(whole.reflectivity.data(), payload.data() + 8 + 2 * pixels);
+  EXPECT_EQ(whole.reflectivity[0], 2);
+  EXPECT_EQ(hl2ss_ahat(payload, pixels + 1).contents, AhatContents::wrong_size);
+  const std::string no_frame = packet(70, 0).substr(k_hl2ss_heading_bytes, 16);
+  EXPECT_EQ(hl2ss_ahat(bytes_of(no_frame), pixels).contents, AhatContents::empty);
 }
 
 TEST_F(Hl2ssTest, RefusesOtherVersionsStreamsAndCompressedFrames) {
