@@ -251,10 +251,10 @@ TEST(OpenSource, NamesTheKindsThereAre) {
     (void)open_source(cell);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "cell.toml:3: source.kind: \"kinect\"; expected simulator, dds, shm, folder, hl2ss_file, "
-        "recording, rosbag, stream_recorder");
+    EXPECT_STREQ(error.what(),
+                 "cell.toml:3: source.kind: \"kinect\"; expected simulator, dds, hl2ss, shm, "
+                 "folder, hl2ss_file, "
+                 "recording, rosbag, stream_recorder");
   }
   cell.source.kind = "folder";
   cell.source.path = "";
