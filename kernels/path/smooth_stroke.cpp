@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_unit_tolerance = 1e-6;
+constexpr double k_unit_norm_tolerance = 1e-6;
 
 bool is_usable(const StrokeFrame& frame) {
   const Pose& pose = frame.measured.pose;
@@ -15,8 +15,8 @@ bool is_usable(const StrokeFrame& frame) {
   const bool finite = pose.translation.allFinite() && frame.measured.covariance.allFinite() &&
                       moved.translation.allFinite() && frame.parent_noise.allFinite();
   // A NaN fails each comparison.
-  return finite && std::abs(pose.rotation.norm() - 1) <= k_unit_tolerance &&
-         std::abs(moved.rotation.norm() - 1) <= k_unit_tolerance && frame.noise.linear >= 0 &&
+  return finite && std::abs(pose.rotation.norm() - 1) <= k_unit_norm_tolerance &&
+         std::abs(moved.rotation.norm() - 1) <= k_unit_norm_tolerance && frame.noise.linear >= 0 &&
          frame.noise.angular >= 0 && std::isfinite(frame.noise.linear + frame.noise.angular);
 }
 
