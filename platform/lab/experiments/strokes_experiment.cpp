@@ -63,16 +63,16 @@ void add_recorded(const CaseOptions& options, CaseList& list) {
 
 CaseList run_strokes(const CaseOptions& options) {
   using enum StrokeShape;
-  constexpr StrokeCase k_cases[] = {
+  constexpr StrokeCase k_stroke_cases[] = {
       {hand, false, true}, {hand, true, true}, {hand, false, false},  {hand, true, false},
       {edge, false, true}, {edge, true, true}, {circle, false, true}, {circle, true, true}};
   CaseList list{"strokes", {}, {}};
   const int seeds = options.quick ? k_stroke_seeds_quick : k_stroke_seeds;
-  const int all = static_cast<int>(std::size(k_cases)) * seeds;
+  const int all = static_cast<int>(std::size(k_stroke_cases)) * seeds;
   int done = 0;
   double fast_rms_m = 0;
   StrokeErrors pooled;  // both rates
-  for (const StrokeCase& stroke : k_cases) {
+  for (const StrokeCase& stroke : k_stroke_cases) {
     StrokeTally tally;
     for (int i = 0; i < seeds; ++i) {
       follow_stroke(stroke, options.seed + static_cast<std::uint64_t>(i), tally);
