@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "platform/cells/cell.hpp"
-#include "platform/sinks/can/descriptor.hpp"
+#include "platform/descriptor.hpp"
 #include "platform/sinks/record/bytes.hpp"
 #include "platform/sources/live_source.hpp"
 #include "platform/sources/tcp_client.hpp"

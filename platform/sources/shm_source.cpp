@@ -15,9 +15,9 @@
 #include <memory>
 #include <utility>
 
+#include "platform/descriptor.hpp"
 #include "platform/input_error.hpp"
 #include "platform/runtime/rt/clock.hpp"
-#include "platform/sinks/can/descriptor.hpp"
 #include "platform/sources/glint_frames.h"
 
 namespace glint {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "kernels/units.hpp"
-#include "platform/sinks/can/descriptor.hpp"
+#include "platform/descriptor.hpp"
 
 namespace glint {
 

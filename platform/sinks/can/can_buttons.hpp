@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "kernels/units.hpp"
+#include "platform/descriptor.hpp"
 #include "platform/sinks/can/button_frames.hpp"
-#include "platform/sinks/can/descriptor.hpp"
 
 namespace glint {
 

@@ -1,8 +1,8 @@
 // CAN sink for a Linux CAN interface (SocketCAN).
 #pragma once
 
+#include "platform/descriptor.hpp"
 #include "platform/sinks/can/can_sink.hpp"
-#include "platform/sinks/can/descriptor.hpp"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "kernels/wire/can_frame.hpp"
-#include "platform/sinks/can/descriptor.hpp"
+#include "platform/descriptor.hpp"
 
 namespace glint {
 

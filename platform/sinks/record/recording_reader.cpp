@@ -1,9 +1,11 @@
 #include "platform/sinks/record/recording_reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <variant>
 
 #include "kernels/wire/bits.hpp"
+#include "platform/input_error.hpp"
 #include "platform/sinks/record/glint_messages.hpp"
 #include "platform/sinks/record/mcap_reader.hpp"
 #include "platform/sinks/record/recording_format.hpp"
@@ -153,6 +155,24 @@ RecordingLosses RecordingReader::losses() const {
   losses.bytes = left_out.bytes;
   losses.at_least = left_out.at_least;
   return losses;
+}
+
+std::vector<ButtonEvent> recorded_buttons(const std::string& path, ReadTolerance tolerance) {
+  constexpr std::size_t k_events_max = 1 << 20;
+  RecordingReader reader(path, tolerance);
+  std::vector<ButtonEvent> events;
+  while (const auto message = reader.next()) {
+    const auto* event = std::get_if<ButtonEvent>(&*message);
+    if (event == nullptr) continue;
+    if (events.size() == k_events_max) {
+      throw InputError(path + ": more than " + std::to_string(k_events_max) +
+                       " button events; expected fewer");
+    }
+    events.push_back(*event);
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const ButtonEvent& a, const ButtonEvent& b) { return a.time < b.time; });
+  return events;
 }
 
 std::string text_of(const RecordingLosses& losses) {

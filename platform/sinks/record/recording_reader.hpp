@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "platform/sinks/record/recording.hpp"
 
@@ -27,6 +28,11 @@ struct RecordingLosses {
 };
 // "at least 3 frames (12 messages), 4096 bytes, 1 damaged chunk".
 [[nodiscard]] std::string text_of(const RecordingLosses& losses);
+
+// Returns a recording's button events in the order of their time. Throws InputError: as the reader,
+// or for more than a million events.
+[[nodiscard]] std::vector<ButtonEvent> recorded_buttons(const std::string& path,
+                                                        ReadTolerance tolerance);
 
 class RecordingReader {
  public:

@@ -13,14 +13,11 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <deque>
-#include <mutex>
-#include <set>
 #include <thread>
 #include <vector>
 
 #include "platform/input_error.hpp"
-#include "platform/sinks/view/foxglove_messages.hpp"
+#include "platform/sinks/view/view_queue.hpp"
 
 namespace glint {
 namespace {
@@ -28,40 +25,10 @@ namespace {
 constexpr char k_protocol[] = "foxglove.websocket.v1";
 constexpr std::size_t k_fragment_bytes = std::size_t{32} << 10;
 constexpr std::size_t k_request_bytes_max = std::size_t{256} << 10;
-constexpr std::size_t k_kept_bytes_max = std::size_t{4} << 10;  // newest of a channel
 constexpr auto k_drain_limit = std::chrono::milliseconds(500);
 
-struct Message {
-  std::uint64_t number = 0;  // rises by one in the queue; 0: a channel's newest, sent again
-  std::uint16_t channel = 0;
-  std::uint64_t unix_ns = 0;
-  std::vector<std::uint8_t> cdr;
-};
-using MessagePointer = std::shared_ptr<const Message>;
-
-struct Channel {
-  std::string advertisement;  // JSON of one channel
-  std::uint16_t number = 0;
-  int subscribers = 0;
-  MessagePointer newest;  // of small messages: what a late client starts with
-};
-
-// What is being sent to one client.
-struct Outgoing {
-  std::vector<std::uint8_t> head;  // text, or the head of a binary message
-  MessagePointer message;          // its rest; null for text
-  std::size_t sent = 0;
-
-  [[nodiscard]] std::size_t size() const {
-    return head.size() + (message != nullptr ? message->cdr.size() : 0);
-  }
-};
-
-struct Client {
-  std::set<Subscription> subscriptions;
-  std::size_t advertised = 0;  // channels
-  std::uint64_t next = 0;      // number of the next message of the queue
-  std::deque<Outgoing> waiting;
+// One connection.
+struct Client : ViewClient {
   std::string request;  // received so far
   lws* connection = nullptr;
 };
@@ -102,7 +69,7 @@ bool is_free(const std::string& address, int port) {
 }  // namespace
 
 struct FoxgloveServer::Body {
-  explicit Body(const FoxgloveSettings& wanted) : settings(wanted) {}
+  explicit Body(const FoxgloveSettings& wanted) : settings(wanted), queue(wanted.queue_bytes) {}
 
   static int on_event(lws* connection, lws_callback_reasons reason, void* user, void* data,
                       std::size_t size);
@@ -110,15 +77,13 @@ struct FoxgloveServer::Body {
   void open(lws* connection, Client** slot);
   void forget(Client** slot);
   bool receive(Client& client, lws* connection, std::string_view part);
-  void apply(Client& client, const Request& request);
-  std::uint64_t skip_lost(Client& client);
-  void enqueue_next(Client& client);
   int send_fragment(Client& client);
   void wake_clients();
   void run();
   [[nodiscard]] bool is_drained();
 
   FoxgloveSettings settings;
+  ViewQueue queue;
   lws_context* context = nullptr;
   int port = 0;
   std::thread thread;
@@ -127,13 +92,6 @@ struct FoxgloveServer::Body {
   // Of the service thread alone.
   std::vector<Client*> clients;
   std::array<std::uint8_t, LWS_PRE + k_fragment_bytes> fragment{};
-
-  std::mutex mutex;  // protects what follows
-  std::vector<Channel> channels;
-  std::deque<MessagePointer> queue;
-  std::size_t queue_bytes = 0;
-  std::uint64_t next_number = 1;
-  FoxgloveCounts counts;
 };
 
 int FoxgloveServer::Body::on_event(lws* connection, lws_callback_reasons reason, void* user,
@@ -176,8 +134,7 @@ int FoxgloveServer::Body::filter(lws* connection) {
       clients.size() < static_cast<std::size_t>(settings.clients_max)) {
     return 0;
   }
-  const std::lock_guard lock(mutex);
-  ++counts.refused;
+  queue.refuse();
   return -1;
 }
 
@@ -186,12 +143,7 @@ void FoxgloveServer::Body::open(lws* connection, Client** slot) {
   Client& client = **slot;
   client.connection = connection;
   clients.push_back(&client);
-  client.waiting.push_back({bytes_of(server_info()), nullptr, 0});
-  {
-    const std::lock_guard lock(mutex);
-    ++counts.clients;
-    client.next = next_number;
-  }
+  queue.enter(client);
   lws_callback_on_writable(connection);
 }
 
@@ -199,13 +151,7 @@ void FoxgloveServer::Body::forget(Client** slot) {
   Client* const client = *slot;
   if (client == nullptr) return;
   clients.erase(std::find(clients.begin(), clients.end(), client));
-  {
-    const std::lock_guard lock(mutex);
-    (void)skip_lost(*client);
-    for (const Subscription& subscription : client->subscriptions) {
-      --channels[subscription.channel_index].subscribers;
-    }
-  }
+  queue.leave(*client);
   delete client;
   *slot = nullptr;
 }
@@ -219,88 +165,14 @@ bool FoxgloveServer::Body::receive(Client& client, lws* connection, std::string_
   }
   const std::string text = std::move(client.request);
   client.request.clear();
-  const std::lock_guard lock(mutex);
-  const std::optional<Request> request =
-      lws_frame_is_binary(connection) != 0 ? std::nullopt : request_of(text);
-  if (!request) {
-    ++counts.invalid;
-    client.waiting.push_back(
-        {bytes_of(error_status("expected subscribe or unsubscribe")), nullptr, 0});
-  } else {
-    apply(client, *request);
-  }
+  queue.apply(client, lws_frame_is_binary(connection) != 0 ? std::string() : text);
   lws_callback_on_writable(connection);
   return client.waiting.size() < k_subscriptions_max;  // else it sends requests without reading
 }
 
-// Requires the lock.
-void FoxgloveServer::Body::apply(Client& client, const Request& request) {
-  for (const std::uint32_t id : request.ended) {
-    const auto found = std::find_if(client.subscriptions.begin(), client.subscriptions.end(),
-                                    [&](const Subscription& one) { return one.id == id; });
-    if (found == client.subscriptions.end()) continue;
-    --channels[found->channel_index].subscribers;
-    client.subscriptions.erase(found);
-  }
-  for (const RequestedChannel& wanted : request.begun) {
-    const auto channel = std::find_if(channels.begin(), channels.end(), [&](const Channel& one) {
-      return one.number == wanted.channel;
-    });
-    if (channel == channels.end() || client.subscriptions.size() == k_subscriptions_max) {
-      ++counts.invalid;
-      client.waiting.push_back(
-          {bytes_of(error_status("no channel " + std::to_string(wanted.channel))), nullptr, 0});
-      continue;
-    }
-    const auto index = static_cast<std::size_t>(channel - channels.begin());
-    if (!client.subscriptions.insert({wanted.id, index}).second) continue;
-    ++channel->subscribers;
-    if (channel->newest == nullptr || channel->newest->number >= client.next) continue;
-    const Message& newest = *channel->newest;
-    client.waiting.push_back({message_head(wanted.id, newest.unix_ns), channel->newest, 0});
-  }
-}
-
-// Counts what left the queue before the client's turn. Returns the number of the queue's first
-// message. Requires the lock.
-std::uint64_t FoxgloveServer::Body::skip_lost(Client& client) {
-  const std::uint64_t first = queue.empty() ? next_number : queue.front()->number;
-  if (client.next >= first) return first;
-  if (!client.subscriptions.empty()) counts.dropped += first - client.next;
-  client.next = first;
-  return first;
-}
-
-// Puts the client's next message, or the next channels, into `waiting`. Requires the lock.
-void FoxgloveServer::Body::enqueue_next(Client& client) {
-  if (client.advertised < channels.size()) {
-    std::vector<std::string> added;
-    for (; client.advertised < channels.size(); ++client.advertised) {
-      added.push_back(channels[client.advertised].advertisement);
-    }
-    client.waiting.push_back({bytes_of(advertise(added)), nullptr, 0});
-    return;
-  }
-  const auto is_subscribed = [&](const Subscription& one, const Message& message) {
-    return channels[one.channel_index].number == message.channel;
-  };
-  const std::uint64_t first = skip_lost(client);
-  for (; client.waiting.empty() && client.next < next_number; ++client.next) {
-    const MessagePointer& message = queue[static_cast<std::size_t>(client.next - first)];
-    for (const Subscription& one : client.subscriptions) {
-      if (!is_subscribed(one, *message)) continue;
-      client.waiting.push_back({message_head(one.id, message->unix_ns), message, 0});
-      ++counts.messages;
-    }
-  }
-}
-
 // Returns 0, or -1 to disconnect.
 int FoxgloveServer::Body::send_fragment(Client& client) {
-  if (client.waiting.empty()) {
-    const std::lock_guard lock(mutex);
-    enqueue_next(client);
-  }
+  if (client.waiting.empty()) queue.enqueue_next(client);
   if (client.waiting.empty()) return 0;
   Outgoing& out = client.waiting.front();
   const std::size_t begin = out.sent, end = std::min(out.size(), begin + k_fragment_bytes);
@@ -329,10 +201,8 @@ void FoxgloveServer::Body::wake_clients() {
 }
 
 bool FoxgloveServer::Body::is_drained() {
-  const std::lock_guard lock(mutex);
-  return std::all_of(clients.begin(), clients.end(), [&](const Client* client) {
-    return client->waiting.empty() && client->next == next_number;
-  });
+  return std::all_of(clients.begin(), clients.end(),
+                     [&](const Client* client) { return queue.is_at_end(*client); });
 }
 
 void FoxgloveServer::Body::run() {
@@ -397,43 +267,18 @@ void FoxgloveServer::close() {
 
 int FoxgloveServer::port() const { return body_->port; }
 
-FoxgloveCounts FoxgloveServer::counts() const {
-  const std::lock_guard lock(body_->mutex);
-  return body_->counts;
-}
+FoxgloveCounts FoxgloveServer::counts() const { return body_->queue.counts(); }
 
 void FoxgloveServer::add_channel(std::uint16_t channel, std::string_view topic,
                                  std::string_view type, std::string_view schema) {
-  const std::lock_guard lock(body_->mutex);
-  body_->channels.push_back({channel_json(channel, topic, type, schema), channel, 0, nullptr});
+  body_->queue.add_channel(channel, topic, type, schema);
   if (body_->context != nullptr) lws_cancel_service(body_->context);
 }
 
 void FoxgloveServer::add_message(std::uint16_t channel, std::uint64_t unix_ns,
                                  std::span<const std::uint8_t> cdr) {
-  Body& body = *body_;
-  {
-    const std::lock_guard lock(body.mutex);
-    const auto found = std::find_if(body.channels.begin(), body.channels.end(),
-                                    [&](const Channel& one) { return one.number == channel; });
-    if (found == body.channels.end()) return;
-    const bool keeps = cdr.size() <= k_kept_bytes_max, sends = found->subscribers > 0;
-    if (!keeps && !sends) return;
-    auto message = std::make_shared<Message>();
-    message->channel = channel;
-    message->unix_ns = unix_ns;
-    message->cdr.assign(cdr.begin(), cdr.end());
-    if (sends) message->number = body.next_number++;
-    if (keeps) found->newest = message;
-    if (!sends) return;
-    body.queue_bytes += message->cdr.size();
-    body.queue.push_back(std::move(message));
-    while (body.queue_bytes > body.settings.queue_bytes && body.queue.size() > 1) {
-      body.queue_bytes -= body.queue.front()->cdr.size();
-      body.queue.pop_front();
-    }
-  }
-  if (body.context != nullptr) lws_cancel_service(body.context);
+  const bool is_wanted = body_->queue.add_message(channel, unix_ns, cdr);
+  if (is_wanted && body_->context != nullptr) lws_cancel_service(body_->context);
 }
 
 }  // namespace glint

@@ -1,11 +1,8 @@
 // Live view of a run: a WebSocket server of protocol foxglove.websocket.v1, which Foxglove,
 // Lichtblick and other clients open. Its channels and messages are those of the run's recording.
 //
-// add_message() copies a message once into a queue that all clients share, and only if a client
-// subscribes to its channel. The queue has a fixed capacity in bytes. A client that reads more
-// slowly loses the oldest messages, which are counted; it delays neither the recording nor other
-// clients. Each message is sent in fragments, so that the library stores at most one of them a
-// client.
+// A client that reads slowly delays neither the recording nor other clients (view_queue.hpp). Each
+// message is sent in fragments, so that the library stores at most one of them a client.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +10,7 @@
 #include <string>
 
 #include "platform/sinks/record/message_observer.hpp"
+#include "platform/sinks/view/view_queue.hpp"
 
 namespace glint {
 
@@ -21,14 +19,6 @@ struct FoxgloveSettings {
   int port = 8765;                    // 0: any free one
   std::size_t queue_bytes = std::size_t{32} << 20;
   int clients_max = 256;
-};
-
-struct FoxgloveCounts {
-  std::uint64_t clients = 0;   // accepted so far
-  std::uint64_t refused = 0;   // too many, another protocol, or a page of another origin
-  std::uint64_t invalid = 0;   // requests that are no JSON of the protocol
-  std::uint64_t messages = 0;  // sent, over all clients
-  std::uint64_t dropped = 0;   // left the queue before a client's turn; of any channel
 };
 
 class FoxgloveServer : public MessageObserver {

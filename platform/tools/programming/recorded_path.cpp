@@ -15,7 +15,6 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_events_max = 1 << 20;
 constexpr Time k_forever{INT64_MAX / 2};
 
 std::vector<std::string> tool_names(const RecordingReader& reader) {
@@ -43,23 +42,6 @@ std::uint8_t tool_number(const std::vector<std::string>& names, const std::strin
 // Order at equal times: press, pose, release.
 bool before_pose(const ButtonEvent& event, Time tick) {
   return event.pressed ? event.time <= tick : event.time < tick;
-}
-
-std::vector<ButtonEvent> recorded_events(const std::string& recording, ReadTolerance tolerance) {
-  RecordingReader reader(recording, tolerance);
-  std::vector<ButtonEvent> events;
-  while (const auto message = reader.next()) {
-    const auto* event = std::get_if<ButtonEvent>(&*message);
-    if (event == nullptr) continue;
-    if (events.size() == k_events_max) {
-      throw InputError(recording + ": more than " + std::to_string(k_events_max) +
-                       " button events; expected fewer");
-    }
-    events.push_back(*event);
-  }
-  std::stable_sort(events.begin(), events.end(),
-                   [](const ButtonEvent& a, const ButtonEvent& b) { return a.time < b.time; });
-  return events;
 }
 
 // Times during which draw is held, in order.
@@ -153,7 +135,7 @@ std::string no_accepted_pose_text(const CaptureCounts& counts) {
 RecordedPath recorded_path(const std::string& recording, const RecordedPathOptions& options) {
   PathCapture capture(options.capture);
   const std::vector<ButtonEvent> events =
-      options.presses.empty() ? recorded_events(recording, options.tolerance) : options.presses;
+      options.presses.empty() ? recorded_buttons(recording, options.tolerance) : options.presses;
   RecordingReader reader(recording, options.tolerance);
   const std::vector<std::string> names = tool_names(reader);
   RecordedPath result;

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double k_coordinate_max_mm = 1e5;
 constexpr double k_touch_radius_m = 0.005;  // as of a click (platform/tools/programming)
-constexpr std::size_t k_samples_max = 1 << 20;
 
 std::optional<Vector3> point_of(TomlReader& reader, const char* key, const std::string& place) {
   const auto numbers = reader.reals(key, 3);
@@ -28,23 +27,6 @@ std::optional<Vector3> point_of(TomlReader& reader, const char* key, const std::
                      " exceeds 100 m; expected millimetres");
   }
   return 1e-3 * point;
-}
-
-std::vector<ButtonEvent> recorded_presses(const std::string& recording, ReadTolerance tolerance) {
-  RecordingReader reader(recording, tolerance);
-  std::vector<ButtonEvent> events;
-  while (const auto message = reader.next()) {
-    const auto* event = std::get_if<ButtonEvent>(&*message);
-    if (event == nullptr) continue;
-    if (events.size() == k_samples_max) {
-      throw InputError(recording + ": more than " + std::to_string(k_samples_max) +
-                       " button events; expected fewer");
-    }
-    events.push_back(*event);
-  }
-  std::stable_sort(events.begin(), events.end(),
-                   [](const ButtonEvent& a, const ButtonEvent& b) { return a.time < b.time; });
-  return events;
 }
 
 struct Press {
@@ -167,7 +149,7 @@ std::vector<TouchedPoint> read_touches(const std::string& file, const TouchOptio
 RecordedTouches set_tips(std::vector<TouchedPoint>& points, const std::string& recording,
                          const TouchOptions& options) {
   const std::vector<Press> presses = presses_of(
-      options.presses.empty() ? recorded_presses(recording, options.tolerance) : options.presses);
+      options.presses.empty() ? recorded_buttons(recording, options.tolerance) : options.presses);
   if (presses.size() != points.size()) {
     throw InputError(recording + ": " + std::to_string(presses.size()) + " touches; expected " +
                      std::to_string(points.size()) + ", one for each point, in the same order");

@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
+#include "platform/descriptor.hpp"
 #include "platform/sinks/can/can_sink.hpp"
-#include "platform/sinks/can/descriptor.hpp"
 #include "tests/unit/platform/sinks/can/temporary_folder.hpp"
 #include "tests/unit/text_of.hpp"
 
