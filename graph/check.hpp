@@ -75,11 +75,12 @@ consteval void check_parameter() {
   if constexpr (kind == PortKind::read || kind == PortKind::previous) {
     constexpr bool written = Wires::template count_of<Token>(PortKind::write) > 0;
     constexpr bool is_graph_input = Wires::template is_input<Token>;
-    constexpr bool other =
-        !written && written_with_other_count<Wires, Token>(typename Wires::Tokens{});
-    (void)sizeof(WrongPartsCount<Token, Node, !other>);
-    constexpr bool found = written || is_graph_input || other;
-    (void)sizeof(NoWriter<Token, Node, found>);
+    if constexpr (!written) {
+      constexpr bool other = written_with_other_count<Wires, Token>(typename Wires::Tokens{});
+      (void)sizeof(WrongPartsCount<Token, Node, !other>);
+      constexpr bool found = is_graph_input || other;
+      (void)sizeof(NoWriter<Token, Node, found>);
+    }
     constexpr bool remembers_input = kind == PortKind::previous && is_graph_input;
     (void)sizeof(PreviousOfInput<Token, !remembers_input>);
   }
