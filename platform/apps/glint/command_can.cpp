@@ -1,4 +1,4 @@
-// glint can dbc: the DBC file of a cell's CAN messages.
+// glint can: the DBC file of a cell's CAN messages, and their layout as a C header.
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/part_file.hpp"
 #include "platform/printable.hpp"
+#include "platform/sinks/can/c_layout.hpp"
 #include "platform/sinks/can/dbc.hpp"
 
 namespace glint {
@@ -70,6 +71,21 @@ void add_dbc(CLI::App& parent, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = write_dbc(*arguments); });
 }
 
+void add_c_layout(CLI::App& parent, int& exit_code) {
+  CLI::App* command =
+      parent.add_subcommand("c-layout", "C header of a tool's messages, for a robot controller");
+  auto out = std::make_shared<std::string>("out/glint_can_layout.h");
+  command->footer(
+      "Example: glint can c-layout --out glint_can_layout.h\n"
+      "platform/sinks/can/controller holds the decoder that includes it.");
+  command->add_option("--out", *out, "file to write")->capture_default_str();
+  command->callback([out, &exit_code] {
+    write_text(*out, c_layout_text());
+    if (!is_special_file(*out)) std::printf("written  %s\n", printable(*out).c_str());
+    exit_code = 0;
+  });
+}
+
 }  // namespace
 
 void add_can(CLI::App& app, int& exit_code) {
@@ -78,6 +94,7 @@ void add_can(CLI::App& app, int& exit_code) {
   command->require_subcommand(1);
   command->footer("Example: glint can dbc --config cell.toml --out cell.dbc");
   add_dbc(*command, exit_code);
+  add_c_layout(*command, exit_code);
 }
 
 }  // namespace glint
