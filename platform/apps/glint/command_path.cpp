@@ -170,7 +170,10 @@ int make_path(PathArguments& arguments) {
     std::printf("written  %s\n", files[i].name.c_str());
   }
   nlohmann::ordered_json json = figures(drawn);
-  if (!arguments.reach.robot.empty()) json["reach_failures"] = reach.failures;
+  if (!arguments.reach.robot.empty()) {
+    json["reach_failures"] = reach.failures;
+    json["moves_not_followed"] = reach.moves_not_followed;
+  }
   write_json(arguments.json, json);
   publish(drawn, arguments.publish);
   return drawn.losses.any() || !reach.failures.empty() ? 1 : 0;
@@ -198,6 +201,8 @@ void add_path(CLI::App& app, int& exit_code) {
       "  glint path out/run.mcap --program weld.src --user-frame 2 --tool-frame 1\n"
       "  glint path out/run.mcap --button 1.0..2.5,3.0..4.2 --spacing 2mm --csv path.csv\n"
       "  glint path out/run.mcap --program weld.src --robot arm.urdf --tip pen_tip\n"
+      "  glint path out/run.mcap --program weld.src --robot arm.urdf --tip pen_tip --octomap "
+      "cell.bt\n"
       "A held button draws a stroke, a click sets a waypoint. Without --robot no point is checked "
       "for "
       "reachability.\n"

@@ -1,10 +1,12 @@
-// Options of `glint path` that check the path with a robot's kinematics.
+// Options of `glint path` that check the path with a robot's kinematics and collisions.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "platform/tools/programming/collision_check.hpp"
 #include "platform/tools/programming/reach_check.hpp"
 
 namespace glint {
@@ -14,12 +16,17 @@ struct ReachArguments {
   std::vector<double> workspace;
   double joint_step_deg = 30;
   PathCheckSettings settings;
+  CollisionSettings collisions;
+  std::vector<double> map_pose;
+  std::vector<std::string> package_dirs;
+  MotionSteps steps;
   bool unchecked = false;
 };
 
 struct PathReachReport {
-  std::vector<std::string> failures;  // one line each
-  std::vector<std::string> header;    // of the program
+  std::vector<std::string> failures;    // one line each
+  std::vector<std::string> header;      // of the program
+  std::int64_t moves_not_followed = 0;  // of the collision check
 };
 
 void add_reach_options(CLI::App& command, ReachArguments& arguments);

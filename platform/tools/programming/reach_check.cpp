@@ -26,26 +26,30 @@ class StrokeCheck {
               InverseKinematics& solver)
       : points_(points), settings_(settings), solver_(solver), solutions_(points.size()) {}
 
-  // One entry for each point. `last` is the initial guess, and the last valid position on return.
-  std::vector<std::optional<Fault>> run(std::optional<KDL::JntArray>& last) {
-    std::vector<std::optional<Fault>> faults(points_.size());
+  struct Followed {
+    std::vector<std::optional<Fault>> faults;  // one entry for each point
+    ElementJoints joints;
+  };
+
+  // `last` is the initial guess, and the last valid position on return.
+  Followed run(std::optional<KDL::JntArray>& last) {
+    Followed start{std::vector<std::optional<Fault>>(points_.size()),
+                   ElementJoints(points_.size())};
     std::size_t first = 0;
     for (; first < points_.size(); ++first) {
       if (last && usable(first, *last)) break;
-      faults[first] = at(first).fault;
-      if (!faults[first]) break;
+      start.faults[first] = at(first).fault;
+      if (!start.faults[first]) break;
     }
-    if (first == points_.size()) return faults;
-    std::vector<std::optional<Fault>> best;
-    KDL::JntArray best_end;
-    const auto attempt = [&](KDL::JntArray joints) {
-      std::vector<std::optional<Fault>> found = faults;
-      follow(first, joints, found);
-      if (best.empty() || count(found) < count(best)) {
-        best = found;
-        best_end = joints;
-      }
-      return count(best) == first;
+    if (first == points_.size()) return start;
+    std::optional<Followed> best;
+    const auto attempt = [&](const KDL::JntArray& joints) {
+      Followed found = start;
+      found.joints[first] = joints;
+      follow(first, found);
+      const std::size_t faults = count(found.faults);
+      if (!best || faults < count(best->faults)) best = std::move(found);
+      return faults == first;
     };
     bool done = false;
     if (last && usable(first, *last))
@@ -55,8 +59,10 @@ class StrokeCheck {
         if (attempt(joints)) break;
       }
     }
-    last = best_end;
-    return best;
+    for (const auto& joints : best->joints) {
+      if (joints) last = joints;
+    }
+    return *best;
   }
 
  private:
@@ -123,25 +129,26 @@ class StrokeCheck {
     if (!known) list.push_back(joints);
   }
 
-  // Follows the points after `first` from these joint positions, which become the last valid ones.
-  void follow(std::size_t first, KDL::JntArray& joints, std::vector<std::optional<Fault>>& faults) {
+  // Follows the points after `first` from its joint positions.
+  void follow(std::size_t first, Followed& followed) {
     std::size_t valid = first;
     for (std::size_t i = first + 1; i < points_.size(); ++i) {
+      const KDL::JntArray& joints = *followed.joints[valid];
       const JointSolution next = solver_.solve(points_[i].pose, joints);
       const double step_max = settings_.joint_step_max * static_cast<double>(i - valid);
       const bool near = next.converged && largest_step(joints, next.joints).first <= step_max;
       std::optional<Fault> fault = fault_of(next);
       if (in_workspace(i) && near && !fault) {
-        joints = next.joints;
+        followed.joints[i] = next.joints;
         valid = i;
       } else if (at(i).fault) {
-        faults[i] = at(i).fault;  // of every configuration
+        followed.faults[i] = at(i).fault;  // of every configuration
       } else if (near) {
-        faults[i] = fault;  // of this configuration
+        followed.faults[i] = fault;  // of this configuration
       } else {
         const KDL::JntArray& changed = nearest(at(i).valid, joints);
-        faults[i] = Fault{ReachFault::joint_step, largest_step(joints, changed).second};
-        joints = changed;
+        followed.faults[i] = Fault{ReachFault::joint_step, largest_step(joints, changed).second};
+        followed.joints[i] = changed;
         valid = i;
       }
     }
@@ -168,8 +175,8 @@ class StrokeCheck {
 
 }  // namespace
 
-std::vector<ReachFailure> check_reach(const DrawnPath& path, const KinematicChain& chain,
-                                      const PathCheckSettings& settings) {
+FollowedPath follow_path(const DrawnPath& path, const KinematicChain& chain,
+                         const PathCheckSettings& settings) {
   std::optional<KDL::JntArray> last;
   if (!settings.start.empty()) {
     if (settings.start.size() != chain.joints.size()) {
@@ -181,24 +188,33 @@ std::vector<ReachFailure> check_reach(const DrawnPath& path, const KinematicChai
     std::copy(settings.start.begin(), settings.start.end(), last->data.data());
   }
   InverseKinematics solver(chain, settings.solver);
-  std::vector<ReachFailure> failures;
+  FollowedPath followed;
   for (std::size_t e = 0; e < path.size(); ++e) {
-    const auto faults = StrokeCheck(path[e].points, settings, solver).run(last);
+    auto [faults, joints] = StrokeCheck(path[e].points, settings, solver).run(last);
+    followed.joints.push_back(std::move(joints));
     for (std::size_t p = 0; p < faults.size(); ++p) {
       if (!faults[p]) continue;
       const int joint = faults[p]->joint;
-      failures.push_back({e + 1, p + 1, faults[p]->fault,
-                          joint < 0 ? "" : chain.joints[static_cast<std::size_t>(joint)]});
+      followed.failures.push_back({e + 1, p + 1, faults[p]->fault,
+                                   joint < 0 ? "" : chain.joints[static_cast<std::size_t>(joint)]});
     }
   }
-  return failures;
+  return followed;
+}
+
+std::vector<ReachFailure> check_reach(const DrawnPath& path, const KinematicChain& chain,
+                                      const PathCheckSettings& settings) {
+  return follow_path(path, chain, settings).failures;
+}
+
+std::string point_text(const DrawnPath& path, std::size_t element, std::size_t point) {
+  const std::string number = std::to_string(element);
+  if (path[element - 1].kind == PathKind::waypoint) return "waypoint " + number;
+  return "stroke " + number + ", point " + std::to_string(point);
 }
 
 std::string failure_text(const DrawnPath& path, const ReachFailure& failure) {
-  const bool waypoint = path[failure.element - 1].kind == PathKind::waypoint;
-  const std::string place = waypoint ? "waypoint " + std::to_string(failure.element)
-                                     : "stroke " + std::to_string(failure.element) + ", point " +
-                                           std::to_string(failure.point);
+  const std::string place = point_text(path, failure.element, failure.point);
   switch (failure.fault) {
     case ReachFault::outside_workspace:
       return place + ": outside of the workspace";

@@ -4,7 +4,7 @@
 // Method: Orocos KDL's Newton-Raphson solver from a declared number of random initial guesses. A
 // stroke is followed from point to point in each configuration found at its first point, until one
 // has no fault; the configuration with the fewest faults is reported. Not checked: the motion
-// between points, collisions, speeds of joints.
+// between points (path_motion.hpp), collisions (collision_check.hpp), speeds of joints.
 #pragma once
 
 #include <array>
@@ -42,11 +42,24 @@ struct ReachFailure {
   std::string joint;  // of joint_limit and joint_step
 };
 
-// Failures in the order of the path. The same path gives the same result. Throws InputError for a
-// `start` of another size than chain.joints.
+// Joint positions at the points of an element; none where the point failed.
+using ElementJoints = std::vector<std::optional<KDL::JntArray>>;
+
+struct FollowedPath {
+  std::vector<ReachFailure> failures;  // in the order of the path
+  std::vector<ElementJoints> joints;   // one entry for each element
+};
+
+// The same path gives the same result. Throws InputError for a `start` of another size than
+// chain.joints.
+[[nodiscard]] FollowedPath follow_path(const DrawnPath& path, const KinematicChain& chain,
+                                       const PathCheckSettings& settings);
 [[nodiscard]] std::vector<ReachFailure> check_reach(const DrawnPath& path,
                                                     const KinematicChain& chain,
                                                     const PathCheckSettings& settings);
+
+// "stroke 3, point 7".
+[[nodiscard]] std::string point_text(const DrawnPath& path, std::size_t element, std::size_t point);
 
 // "stroke 3, point 7: joint limit of elbow".
 [[nodiscard]] std::string failure_text(const DrawnPath& path, const ReachFailure& failure);

@@ -6,7 +6,6 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <sys/resource.h>
 
 #include <assimp/Importer.hpp>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "platform/tools/robot/limit_memory.hpp"
 #include "platform/tools/robot/mesh_bytes.hpp"
 
 namespace glint {
@@ -68,18 +68,6 @@ struct MeshReader {
     }
   }
 };
-
-// An address sanitizer reserves terabytes of address space, so the limit is not set there.
-void limit_memory(rlim_t bytes) {
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-#ifndef GLINT_SANITIZED
-  const rlimit limit{bytes, bytes};
-  ::setrlimit(RLIMIT_AS, &limit);
-#else
-  (void)bytes;
-#endif
-}
 
 Mesh read(const char* path, const Eigen::Vector3d& scale) {
   Assimp::Importer importer;

@@ -134,6 +134,7 @@ class TreeBuilder {
 class Welder {
  public:
   explicit Welder(int link) { surface_.link = link; }
+  [[nodiscard]] int link() const { return surface_.link; }
   void add(const Triangle& t) {
     surface_.faces.push_back({number_of(t.a), number_of(t.b), number_of(t.c)});
   }
@@ -154,6 +155,10 @@ class Welder {
 void add_geometry(const urdf::Geometry& geometry, const urdf::Pose& origin, const RobotFiles& files,
                   Welder& surface, RobotModel& robot) {
   std::vector<Triangle> triangles;
+  const Pose pose = pose_of(origin);
+  const auto add_solid = [&](SolidShape shape, const Vector3& size_m) {
+    robot.solids.push_back({surface.link(), shape, size_m, pose});
+  };
   if (geometry.type == urdf::Geometry::MESH) {
     const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
     Mesh read =
@@ -163,13 +168,16 @@ void add_geometry(const urdf::Geometry& geometry, const urdf::Pose& origin, cons
   } else if (geometry.type == urdf::Geometry::BOX) {
     const urdf::Vector3& dim = static_cast<const urdf::Box&>(geometry).dim;
     triangles = box_surface({dim.x, dim.y, dim.z});
+    add_solid(SolidShape::box, {dim.x, dim.y, dim.z});
   } else if (geometry.type == urdf::Geometry::CYLINDER) {
     const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
     triangles = cylinder_surface(cylinder.radius, cylinder.length);
+    add_solid(SolidShape::cylinder, {cylinder.radius, cylinder.length, 0});
   } else {
-    triangles = sphere_surface(static_cast<const urdf::Sphere&>(geometry).radius);
+    const double radius_m = static_cast<const urdf::Sphere&>(geometry).radius;
+    triangles = sphere_surface(radius_m);
+    add_solid(SolidShape::sphere, {radius_m, 0, 0});
   }
-  const Pose pose = pose_of(origin);
   const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
   const Vector3f translation = pose.translation.cast<float>();
   for (const Triangle& t : triangles) {

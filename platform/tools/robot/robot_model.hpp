@@ -17,6 +17,16 @@ struct LinkSurface {
   std::vector<Face> faces;
 };
 
+enum class SolidShape : std::uint8_t { box, cylinder, sphere };
+
+// Box, cylinder or sphere of a link. Its triangles are in the link's surface, too.
+struct LinkSolid {
+  int link = 0;  // as in LinkPoses
+  SolidShape shape = SolidShape::box;
+  Vector3 size_m = Vector3::Zero();  // sides; radius and length, along z; radius
+  Pose T_link_solid;
+};
+
 // Triangles of the complete robot.
 struct PosedSurface {
   std::vector<Vector3f> corners;
@@ -32,6 +42,7 @@ struct RobotModel {
   std::vector<std::string> links;   // by index; 0 is the root
   std::vector<std::string> inputs;  // joints with a value of their own, in URDF order
   std::vector<LinkSurface> surfaces;
+  std::vector<LinkSolid> solids;
   int triangles_skipped = 0;  // zero area, or not finite
 };
 

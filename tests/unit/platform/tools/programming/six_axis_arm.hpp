@@ -26,19 +26,21 @@ struct SixAxisArm {
     return Quaternion(Eigen::AngleAxisd(angle, Vector3::Unit(axis)));
   }
 
-  [[nodiscard]] std::string urdf() const {
+  // `links`: the elements of links l1 to l6, instead of links without shapes.
+  [[nodiscard]] std::string urdf(const std::string& links = "") const {
     const double offset[6] = {base, 0, upper, fore, 0, 0};
     const char* axis[6] = {"0 0 1", "0 1 0", "0 1 0", "0 0 1", "0 1 0", "0 0 1"};
     std::string xml = "<robot name='six_axis'><link name='l0'/>";
     const auto origin = [](double z) { return "<origin xyz='0 0 " + std::to_string(z) + "'/>"; };
     for (std::size_t i = 0; i < 6; ++i) {
       const std::string n = std::to_string(i), m = std::to_string(i + 1);
-      xml += "<link name='l" + m + "'/><joint name='j" + m + "' type='revolute'><parent link='l" +
-             n + "'/><child link='l" + m + "'/>" + origin(offset[i]) + "<axis xyz='" + axis[i] +
+      if (links.empty()) xml += "<link name='l" + m + "'/>";
+      xml += "<joint name='j" + m + "' type='revolute'><parent link='l" + n + "'/><child link='l" +
+             m + "'/>" + origin(offset[i]) + "<axis xyz='" + axis[i] +
              "'/><limit effort='1' velocity='1' lower='" + std::to_string(low[i]) + "' upper='" +
              std::to_string(high[i]) + "'/></joint>";
     }
-    return xml +
+    return xml + links +
            "<link name='tip'/><joint name='hand' type='fixed'><parent link='l6'/>"
            "<child link='tip'/>" +
            origin(hand) + "</joint></robot>";
