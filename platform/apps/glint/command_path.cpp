@@ -20,12 +20,16 @@
 #include "platform/tools/programming/press_times.hpp"
 #include "platform/tools/programming/program_format.hpp"
 #include "platform/tools/programming/recorded_path.hpp"
+#include "platform/tools/programming/stroke_edits.hpp"
+#include "platform/tools/programming/strokes_json.hpp"
+#include "platform/tools/programming/strokes_recording.hpp"
 
 namespace glint {
 namespace {
 
 struct PathArguments {
-  std::string recording, button, csv, urscript, program, format, name, json;
+  std::string input, with, button, csv, urscript, program, format, name, json;
+  std::vector<std::string> edits;
   RecordedPathOptions options;
   ProgramSettings settings;
   ReachArguments reach;
@@ -53,16 +57,19 @@ double median_sigma_m(const DrawnPath& path) {
   return std::sqrt(*middle);
 }
 
-void print_table(const RecordedPath& drawn, double spacing_m) {
-  const CaptureCounts& counts = drawn.counts;
+void print_elements(const DrawnPath& path) {
   int number = 0;
-  for (const PathElement& element : drawn.path) {
+  for (const PathElement& element : path) {
     const UncertainPose& first = element.points.front();
     const Vector3& at = first.pose.translation;
-    std::printf("%3d  %-8s  %5zu points  at %9.3f s  from %+.4f %+.4f %+.4f m\n", ++number,
-                element.kind == PathKind::waypoint ? "waypoint" : "stroke", element.points.size(),
+    std::printf("%3d  %-12s  %-8s  %5zu points  at %9.3f s  from %+.4f %+.4f %+.4f m\n", ++number,
+                element.name.c_str(), name_of(element.kind), element.points.size(),
                 static_cast<double>(first.time.nanoseconds) * 1e-9, at.x(), at.y(), at.z());
   }
+}
+
+void print_capture(const RecordedPath& drawn, double spacing_m) {
+  const CaptureCounts& counts = drawn.counts;
   std::printf("poses while held %lld, used %lld; largest sigma an axis %.2f mm\n",
               static_cast<long long>(counts.poses), static_cast<long long>(counts.poses_accepted),
               1e3 * largest_sigma_m(drawn.path));
@@ -98,7 +105,8 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
 nlohmann::ordered_json figures(const RecordedPath& drawn) {
   nlohmann::ordered_json elements = nlohmann::ordered_json::array();
   for (const PathElement& element : drawn.path) {
-    elements.push_back({{"kind", element.kind == PathKind::waypoint ? "waypoint" : "stroke"},
+    elements.push_back({{"name", element.name},
+                        {"kind", name_of(element.kind)},
                         {"points", element.points.size()}});
   }
   const CaptureCounts& counts = drawn.counts;
@@ -134,6 +142,31 @@ void publish(const RecordedPath& drawn, const PublishOptions& options) {
   keep_publishing(publisher, options);
 }
 
+bool is_strokes_file(const std::string& name) {
+  return std::filesystem::path(name).extension() == ".json";
+}
+
+// The path as drawn or read, after the edits.
+RecordedPath input_path(const PathArguments& arguments) {
+  RecordedPath drawn;
+  if (is_strokes_file(arguments.input)) {
+    StrokesFile strokes = read_strokes(arguments.input);
+    drawn.path = std::move(strokes.path);
+    drawn.tool = strokes.tool;
+    drawn.unix_offset = strokes.unix_offset;
+  } else {
+    drawn = recorded_path(arguments.input, arguments.options);
+  }
+  if (!arguments.with.empty()) {
+    const DrawnPath first = read_strokes(arguments.with).path;
+    drawn.path.insert(drawn.path.begin(), first.begin(), first.end());
+  }
+  drawn.path = edited(named(std::move(drawn.path)), arguments.edits);
+  if (drawn.path.empty())
+    throw InputError(arguments.input + ": no element left; expected one or more");
+  return drawn;
+}
+
 struct PathFile {
   std::string name;
   ProgramFormat format;
@@ -152,21 +185,30 @@ std::vector<PathFile> requested_files(const PathArguments& arguments) {
 int make_path(PathArguments& arguments) {
   if (!arguments.button.empty()) arguments.options.presses = press_times(arguments.button);
   const std::vector<PathFile> files = requested_files(arguments);
-  const RecordedPath drawn = recorded_path(arguments.recording, arguments.options);
+  const RecordedPath drawn = input_path(arguments);
   arguments.settings.recording =
-      std::filesystem::path(arguments.recording).filename().string() + ", tool " + drawn.tool;
+      std::filesystem::path(arguments.input).filename().string() + ", tool " + drawn.tool;
   const PathReachReport reach = check_path(drawn.path, arguments.reach);
   arguments.settings.checks = reach.header;
+  const StrokesFile strokes{drawn.path, drawn.tool, drawn.unix_offset};
   // Makes all texts before the first file: a rejected path leaves no file.
   std::vector<std::string> texts;
   for (const PathFile& file : files) {
     ProgramSettings settings = arguments.settings;
     settings.name = arguments.name.empty() ? program_name(file.name) : arguments.name;
-    texts.push_back(path_text(drawn.path, settings, file.format));
+    texts.push_back(file.format == ProgramFormat::mcap ? std::string()
+                                                       : path_text(strokes, settings, file.format));
   }
-  print_table(drawn, arguments.options.capture.stroke.spacing_m);
+  print_elements(drawn.path);
+  if (!is_strokes_file(arguments.input))
+    print_capture(drawn, arguments.options.capture.stroke.spacing_m);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    write_text(files[i].name, texts[i]);
+    if (files[i].format == ProgramFormat::mcap) {
+      make_folder_of(files[i].name);
+      write_strokes_recording(files[i].name, strokes);
+    } else {
+      write_text(files[i].name, texts[i]);
+    }
     std::printf("written  %s\n", files[i].name.c_str());
   }
   nlohmann::ordered_json json = figures(drawn);
@@ -203,12 +245,26 @@ void add_path(CLI::App& app, int& exit_code) {
       "  glint path out/run.mcap --program weld.src --robot arm.urdf --tip pen_tip\n"
       "  glint path out/run.mcap --program weld.src --robot arm.urdf --tip pen_tip --octomap "
       "cell.bt\n"
+      "  glint path out/run.mcap --edit \"rename stroke_1 seam\" --edit \"offset seam tool 2mm\" "
+      "--program seam.json\n"
+      "  glint path out/again.mcap --with seam.json --edit \"replace seam stroke_2\" --program "
+      "seam.json\n"
       "A held button draws a stroke, a click sets a waypoint. Without --robot no point is checked "
       "for "
       "reachability.\n"
       "Poses are smoothed in hindsight over the measured frames of a stroke; --live: as sent.\n"
       "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
-  command->add_option("recording", arguments->recording, "recording of `glint run`")->required();
+  command
+      ->add_option("input", arguments->input, "recording of `glint run`, or strokes file (.json)")
+      ->required();
+  command->add_option("--with", arguments->with,
+                      "strokes file whose elements precede those of the input");
+  command
+      ->add_option("--edit", arguments->edits,
+                   "edit of the path, applied in the given order: \"delete NAME\", \"rename NAME "
+                   "NEW\", \"replace NAME NEWER\", \"offset NAME DIRECTION LENGTH\" (x,y,z, tool "
+                   "or normal), \"mirror NAME POINT NORMAL\" (x,y,z); NAME * is every element")
+      ->allow_extra_args(false);
   command->add_option("--tool", arguments->options.tool,
                       "name of the pen; default: the first tool");
   command->add_option("--button", arguments->button,
@@ -228,9 +284,9 @@ void add_path(CLI::App& app, int& exit_code) {
   CLI::Option* program = command->add_option(
       "--program", arguments->program,
       "file of the program; its suffix selects the language: .script (URScript), .src (KUKA KRL), "
-      ".mod (ABB RAPID), .ls (FANUC); .csv: the table");
+      ".mod (ABB RAPID), .ls (FANUC); .csv: the table; .json, .mcap: the strokes file");
   command->add_option("--format", arguments->format, "language of --program")
-      ->check(CLI::IsMember({"urscript", "krl", "rapid", "ls", "csv"}))
+      ->check(CLI::IsMember({"urscript", "krl", "rapid", "ls", "csv", "json", "mcap"}))
       ->needs(program);
   command->add_option("--name", arguments->name, "name of the program; default: the file's name");
   ProgramSettings& settings = arguments->settings;

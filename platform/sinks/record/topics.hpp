@@ -18,6 +18,7 @@ inline constexpr std::string_view k_dropped_topic = "/glint/dropped";
 inline constexpr std::string_view k_button_topic = "/glint/button";
 inline constexpr std::string_view k_robot_frame_topic = "/glint/robot_frame";
 inline constexpr std::string_view k_pen_buttons_topic = "/glint/pen_buttons";
+inline constexpr std::string_view k_stroke_topic = "/glint/stroke";  // of `glint path`
 inline constexpr std::string_view k_transform_topic = "/tf";
 
 // Letters, digits and '_' of the name; "toolN" if the result is empty or the tool has no name.

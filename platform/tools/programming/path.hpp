@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "kernels/motion/motion_state.hpp"
@@ -13,6 +14,7 @@ enum class PathKind : std::uint8_t { waypoint, stroke };
 struct PathElement {
   PathKind kind = PathKind::waypoint;
   std::vector<UncertainPose> points;  // T_robot_tip; waypoint: one, stroke: two or more
+  std::string name{};                 // unique in a path; edits and files use it
 };
 
 using DrawnPath = std::vector<PathElement>;
@@ -21,6 +23,10 @@ using DrawnPath = std::vector<PathElement>;
   std::size_t count = 0;
   for (const PathElement& element : path) count += element.points.size();
   return count;
+}
+
+[[nodiscard]] inline const char* name_of(PathKind kind) {
+  return kind == PathKind::waypoint ? "waypoint" : "stroke";
 }
 
 }  // namespace glint

@@ -24,7 +24,9 @@ constexpr Entry k_formats[] = {{ProgramFormat::urscript, "urscript", ".SCRIPT"},
                                {ProgramFormat::krl, "krl", ".SRC"},
                                {ProgramFormat::rapid, "rapid", ".MOD"},
                                {ProgramFormat::ls, "ls", ".LS"},
-                               {ProgramFormat::csv, "csv", ".CSV"}};
+                               {ProgramFormat::csv, "csv", ".CSV"},
+                               {ProgramFormat::json, "json", ".JSON"},
+                               {ProgramFormat::mcap, "mcap", ".MCAP"}};
 
 }  // namespace
 
@@ -35,10 +37,11 @@ ProgramFormat program_format(const std::string& name, const std::string& file) {
   }
   if (!name.empty()) {
     throw InputError("--format: found \"" + printable(name) +
-                     "\"; expected urscript, krl, rapid, ls or csv");
+                     "\"; expected urscript, krl, rapid, ls, csv, json or mcap");
   }
-  throw InputError(printable(file) +
-                   ": unknown suffix; expected .script, .src, .mod, .ls or .csv, or --format");
+  throw InputError(
+      printable(file) +
+      ": unknown suffix; expected .script, .src, .mod, .ls, .csv, .json or .mcap, or --format");
 }
 
 std::string program_name(const std::string& file) {
@@ -50,10 +53,11 @@ std::string program_name(const std::string& file) {
   return !name.empty() && letter(name.front()) ? name : "p_" + name;
 }
 
-std::string path_text(const DrawnPath& path, const ProgramSettings& settings,
+std::string path_text(const StrokesFile& strokes, const ProgramSettings& settings,
                       ProgramFormat format) {
-  if (format == ProgramFormat::csv) return path_csv(path);
-  const RobotProgram program = robot_program(path, settings);
+  if (format == ProgramFormat::csv) return path_csv(strokes.path);
+  if (format == ProgramFormat::json) return strokes_json(strokes);
+  const RobotProgram program = robot_program(strokes.path, settings);
   switch (format) {
     case ProgramFormat::krl:
       return krl(program);

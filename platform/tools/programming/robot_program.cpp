@@ -54,7 +54,8 @@ std::string comment_of(const PathElement& element, std::size_t number) {
   return std::to_string(number) +
          (element.kind == PathKind::waypoint
               ? ": waypoint"
-              : ": stroke of " + std::to_string(element.points.size()) + " points");
+              : ": stroke of " + std::to_string(element.points.size()) + " points") +
+         (element.name.empty() ? "" : ", " + element.name);
 }
 
 double distance_between(const RobotMove& a, const RobotMove& b) {

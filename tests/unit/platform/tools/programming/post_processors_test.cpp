@@ -93,7 +93,7 @@ TEST(PostProcessors, AreReadBackTo1MicrometreAnd1MillidegreeOn30Strokes) {
     for (const Dialect& dialect : k_dialects) {
       SCOPED_TRACE(dialect.name);
       const test::ReadProgram read =
-          dialect.read(path_text(path, sample_settings(), dialect.format));
+          dialect.read(path_text({path}, sample_settings(), dialect.format));
       ASSERT_EQ(read.moves.size(), program.moves.size());
       double worst_m = 0, worst_deg = 0;
       int blends = 0;
@@ -122,7 +122,8 @@ TEST(PostProcessors, StateNameFramesAccelerationAndWhatIsNotChecked) {
     SCOPED_TRACE(dialect.name);
     const bool urscript = dialect.format == ProgramFormat::urscript;
     const bool ls = dialect.format == ProgramFormat::ls;
-    const test::ReadProgram read = dialect.read(path_text(path, sample_settings(), dialect.format));
+    const test::ReadProgram read =
+        dialect.read(path_text({path}, sample_settings(), dialect.format));
     EXPECT_EQ(read.name, ls ? "GLINT_PATH" : "glint_path");
     EXPECT_EQ(read.user_frame, urscript ? -1 : 3);
     EXPECT_EQ(read.tool_frame, urscript ? -1 : 2);
@@ -142,15 +143,15 @@ TEST(PostProcessors, WriteQuarterTurnsAsTheManualsDefineThem) {
     path.push_back({PathKind::waypoint,
                     {{Time{}, {about(axis, 90), Vector3(0.5, -0.25, 0.125)}, Matrix6::Zero()}}});
   }
-  const std::string krl = path_text(path, {}, ProgramFormat::krl);
+  const std::string krl = path_text({path}, {}, ProgramFormat::krl);
   const std::string place = "LIN {X 500.0000,Y -250.0000,Z 125.0000,";
   EXPECT_NE(krl.find(place + "A 90.00000,B 0.00000,C 0.00000}"), std::string::npos) << krl;
   EXPECT_NE(krl.find(",B 90.00000,"), std::string::npos) << krl;
   EXPECT_NE(krl.find(place + "A 0.00000,B 0.00000,C 90.00000}"), std::string::npos) << krl;
-  const std::string ls = path_text(path, {}, ProgramFormat::ls);
+  const std::string ls = path_text({path}, {}, ProgramFormat::ls);
   EXPECT_NE(ls.find("W = 0.00000 deg,\tP = 0.00000 deg,\tR = 90.00000 deg"), std::string::npos);
   EXPECT_NE(ls.find("W = 90.00000 deg,\tP = 0.00000 deg,\tR = 0.00000 deg"), std::string::npos);
-  const std::string rapid = path_text(path, {}, ProgramFormat::rapid);
+  const std::string rapid = path_text({path}, {}, ProgramFormat::rapid);
   EXPECT_NE(rapid.find("[0.70710678,0.00000000,0.00000000,0.70710678]"), std::string::npos);
 }
 
@@ -161,7 +162,7 @@ TEST(ProgramReaders, RejectAProgramWithADamagedLine) {
   ProgramSettings settings = sample_settings();
   settings.name = "g";  // part of a longer name would be a name
   for (const Dialect& dialect : k_dialects) {
-    std::istringstream text(path_text(path, settings, dialect.format));
+    std::istringstream text(path_text({path}, settings, dialect.format));
     std::vector<std::string> lines;
     for (std::string line; std::getline(text, line);) lines.push_back(line);
     int damaged = 0;
@@ -187,7 +188,7 @@ TEST(PostProcessors, CleanForeignText) {
       "a\nhalt()\r;END\xC3\xA9 ! of a name that is longer than a remark of 32 letters";
   const DrawnPath path = thirty_strokes(8);
   for (const Dialect& dialect : k_dialects) {
-    const test::ReadProgram read = dialect.read(path_text(path, settings, dialect.format));
+    const test::ReadProgram read = dialect.read(path_text({path}, settings, dialect.format));
     EXPECT_EQ(read.moves.size(), point_count(path)) << dialect.name;
     for (const std::string& line : read.comments) {
       EXPECT_TRUE(
@@ -199,7 +200,7 @@ TEST(PostProcessors, CleanForeignText) {
 
 std::string refusal(const DrawnPath& path, const ProgramSettings& settings, ProgramFormat format) {
   try {
-    (void)path_text(path, settings, format);
+    (void)path_text({path}, settings, format);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -263,6 +264,8 @@ TEST(ProgramFormat, FollowsTheNameOrTheSuffix) {
   EXPECT_EQ(program_format("", "a.b.mod"), ProgramFormat::rapid);
   EXPECT_EQ(program_format("", "a.ls"), ProgramFormat::ls);
   EXPECT_EQ(program_format("", "a.csv"), ProgramFormat::csv);
+  EXPECT_EQ(program_format("", "a.json"), ProgramFormat::json);
+  EXPECT_EQ(program_format("", "a.MCAP"), ProgramFormat::mcap);
   EXPECT_EQ(program_format("krl", "a.ls"), ProgramFormat::krl);
   EXPECT_THROW((void)program_format("", "a.txt"), InputError);
   EXPECT_THROW((void)program_format("", "ls"), InputError);
