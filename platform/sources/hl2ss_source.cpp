@@ -287,8 +287,8 @@ void Hl2ssSource::take_packet() {
   if (!accept_rising(stamp, newest_stamp_)) return;
   const std::optional<Time> exposure = exposure_of(stamp, arrival);
   if (!exposure) return;
-  Slot* const slot = free_slot();
-  if (slot == nullptr) return drop();
+  Slot* const slot = slot_for_next();
+  if (slot == nullptr) return;
   std::memcpy(slot->pixels.depth.data(), payload.depth.data(), payload.depth.size());
   std::memcpy(slot->pixels.reflectivity_16.data(), payload.reflectivity.data(),
               payload.reflectivity.size());

@@ -39,21 +39,32 @@ bool LiveSource::is_over(Time now) const noexcept {
 }
 
 bool LiveSource::wait(ArrivedFrame& arrived) {
-  for (;;) {
+  std::optional<std::size_t> taken;
+  while (!taken) {
     const Time now = monotonic_now();
     if (is_over(now)) {
       ended_ = true;  // later frames do not count as dropped
       return false;
     }
-    if (is_read_.wait_until(now + k_live_poll)) break;
+    if (is_read_.wait_until(now + k_live_poll)) taken = take_oldest();
   }
-  const std::uint64_t number = delivered_++;
-  const Slot& slot = slots_[number % k_live_frames];
-  arrived.frame = slot.pixels.view(slot.mid_exposure, slot.arrival, number);
+  const Slot& slot = slots_[*taken];
+  arrived.frame = slot.pixels.view(slot.mid_exposure, slot.arrival, delivered_++);
   arrived.frame.stamp_sigma = slot.stamp_sigma;
   arrived.head = slot.head;
-  arrived.slot = static_cast<int>(number % k_live_frames);
+  arrived.slot = static_cast<int>(*taken);
   return true;
+}
+
+// A failed exchange means that the other thread took that frame; it takes one at a time.
+std::optional<std::size_t> LiveSource::take_oldest() noexcept {
+  for (std::size_t attempt = 0; attempt < k_live_frames; ++attempt) {
+    std::uint64_t oldest = taken_;
+    if (oldest == written_) return std::nullopt;
+    const std::size_t slot = order_[oldest % k_live_frames];
+    if (taken_.compare_exchange_strong(oldest, oldest + 1)) return slot;
+  }
+  return std::nullopt;
 }
 
 double LiveSource::delivered_part() const noexcept {
@@ -91,12 +102,23 @@ std::optional<Time> LiveSource::exposure_of(Time stamp, Time arrival) {
   return exposure;
 }
 
-LiveSource::Slot* LiveSource::free_slot() {
-  return written_ - released_ < k_live_frames ? &slots_[written_ % k_live_frames] : nullptr;
+LiveSource::Slot* LiveSource::slot_for_next() {
+  const auto unused =
+      std::find_if(used_.begin(), used_.end(), [](const auto& used) { return !used; });
+  if (unused != used_.end()) {
+    next_slot_ = static_cast<std::size_t>(unused - used_.begin());
+    return &slots_[next_slot_];
+  }
+  const std::optional<std::size_t> oldest = take_oldest();
+  dropped_ += ended_ ? 0 : 1;
+  if (!oldest) return nullptr;
+  used_[*oldest] = false;
+  next_slot_ = *oldest;
+  return &slots_[next_slot_];
 }
 
 void LiveSource::publish(Time mid_exposure, Time arrival, const HeadPose& head) {
-  Slot& slot = slots_[written_ % k_live_frames];
+  Slot& slot = slots_[next_slot_];
   slot.mid_exposure = mid_exposure;
   slot.stamp_sigma = map_->uncertainty();
   slot.arrival = session_time(arrival);
@@ -105,6 +127,8 @@ void LiveSource::publish(Time mid_exposure, Time arrival, const HeadPose& head) 
   without_pose_ += head.valid ? 0 : 1;
   poses_refused_ += head.valid && !slot.head.valid ? 1 : 0;
   slot.head.time = mid_exposure;
+  used_[next_slot_] = true;
+  order_[written_ % k_live_frames] = next_slot_;
   ++written_;
   is_read_.post();
 }

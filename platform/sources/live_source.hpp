@@ -2,6 +2,7 @@
 // map from the stamps' clock to session time.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,8 @@
 
 namespace glint {
 
-inline constexpr std::size_t k_live_frames = 8;  // capacity of frames that wait for the tracker
+// Capacity of frames: those that wait for the tracker, and the one that it has.
+inline constexpr std::size_t k_live_frames = 8;
 // Period of checks for the end of a run.
 inline constexpr Duration k_live_poll = milliseconds(50);
 // Largest magnitude of a stamp: the difference of two fits into 64 bits.
@@ -35,7 +37,9 @@ class LiveSource : public FrameSource {
   // Throws InputError if the clock is not live.
   void start(const SourceClock& clock) override;
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
-  void release_pixels(const ArrivedFrame& /*arrived*/) noexcept override { ++released_; }
+  void release_pixels(const ArrivedFrame& arrived) noexcept override {
+    used_[static_cast<std::size_t>(arrived.slot)] = false;
+  }
   [[nodiscard]] Duration duration() const noexcept override { return settings_.duration; }
   [[nodiscard]] double delivered_part() const noexcept override;
 
@@ -58,11 +62,11 @@ class LiveSource : public FrameSource {
   // Returns the mid-exposure in session time; empty if the stamp is refused (counted) or before the
   // session.
   [[nodiscard]] std::optional<Time> exposure_of(Time stamp, Time arrival);
-  // Returns the slot for the next frame; null if the tracker holds all. drop() counts a lost frame.
-  [[nodiscard]] Slot* free_slot();
-  void drop() { dropped_ += ended_ ? 0 : 1; }
-  // Publishes the slot of free_slot(). arrival: monotonic clock. An invalid head pose is cleared
-  // and counted.
+  // Returns the slot for the next frame. If all are used, the oldest frame that waits is dropped
+  // and counted, since a pose needs the newest one. Null if the tracker has all of them.
+  [[nodiscard]] Slot* slot_for_next();
+  // Publishes the slot of slot_for_next(). arrival: monotonic clock. An invalid head pose is
+  // cleared and counted.
   void publish(Time mid_exposure, Time arrival, const HeadPose& head);
   [[nodiscard]] std::uint64_t published() const { return written_; }
   // Adds the counts and the failures of this class to the report.
@@ -70,6 +74,9 @@ class LiveSource : public FrameSource {
 
  private:
   [[nodiscard]] bool is_over(Time now) const noexcept;
+  // Removes the oldest frame that waits and returns its slot. Called by the tracker and, to drop
+  // the frame, by the reading thread.
+  [[nodiscard]] std::optional<std::size_t> take_oldest() noexcept;
   [[nodiscard]] Time session_time(Time monotonic) const {
     return Time{} + (monotonic - clock_.epoch);
   }
@@ -79,7 +86,11 @@ class LiveSource : public FrameSource {
   SourceClock clock_;
   std::vector<Slot> slots_;
   Release is_read_;
-  std::atomic<std::uint64_t> written_{0}, released_{0};
+  // The frames numbered [taken_, written_) wait; frame n is in slot order_[n % k_live_frames].
+  std::atomic<std::uint64_t> written_{0}, taken_{0};
+  std::array<std::atomic<std::size_t>, k_live_frames> order_{};
+  std::array<std::atomic<bool>, k_live_frames> used_{};  // by frames that wait, or by the tracker
+  std::size_t next_slot_ = 0;                            // of slot_for_next()
   std::uint64_t delivered_ = 0;
   std::atomic<bool> started_{false}, ended_{false};
   std::optional<ClockMap> map_;

@@ -158,8 +158,8 @@ Time RosFrames::due() const {
 }
 
 void RosFrames::deliver(Pair& pair) {
-  LiveSource::Slot* const slot = frames_.free_slot();
-  if (slot == nullptr) return frames_.drop();
+  LiveSource::Slot* const slot = frames_.slot_for_next();
+  if (slot == nullptr) return;
   slot->pixels.depth.swap(pair.depth.values);
   if (frames_.camera().reflectivity_bits > 8) {
     slot->pixels.reflectivity_16.swap(pair.reflectivity.values);

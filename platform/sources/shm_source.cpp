@@ -18,7 +18,6 @@
 #include "platform/descriptor.hpp"
 #include "platform/input_error.hpp"
 #include "platform/runtime/rt/clock.hpp"
-#include "platform/sources/glint_frames.h"
 
 namespace glint {
 namespace {
@@ -255,9 +254,11 @@ void ShmSource::take_frame(Producer& producer, const void* message) {
     ++malformed_;
     return;
   }
-  Slot* const slot = free_slot();
-  const bool whole = slot != nullptr && copy_pixels(producer, frame.slot, *slot);
+  copy_frame(producer, frame, arrival);
   (void)::send(producer.socket.get(), &frame.slot, sizeof frame.slot, MSG_NOSIGNAL);
+}
+
+void ShmSource::copy_frame(Producer& producer, const glint_frames_frame& frame, Time arrival) {
   if (producer.sequence && frame.sequence > *producer.sequence) {
     skipped_ += frame.sequence - *producer.sequence - 1;
   }
@@ -266,8 +267,9 @@ void ShmSource::take_frame(Producer& producer, const void* message) {
   if (!accept_rising(stamp, newest_stamp_)) return;
   const std::optional<Time> exposure = exposure_of(stamp, arrival);
   if (!exposure) return;
-  if (slot == nullptr) return drop();
-  if (!whole) {
+  Slot* const slot = slot_for_next();
+  if (slot == nullptr) return;
+  if (!copy_pixels(producer, frame.slot, *slot)) {
     ++torn_;
     return;
   }

@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "platform/sources/glint_frames.h"
 #include "platform/sources/live_source.hpp"
 
 namespace glint {
@@ -32,6 +33,7 @@ class ShmSource final : public LiveSource {
   void refuse_producer(const std::string& why, int socket);
   void read_message(std::optional<Producer>& producer);
   void take_frame(Producer& producer, const void* message);
+  void copy_frame(Producer& producer, const glint_frames_frame& frame, Time arrival);
   [[nodiscard]] bool copy_pixels(const Producer& producer, std::uint32_t slot, Slot& to) const;
   void stop();
 
