@@ -200,6 +200,7 @@ void Hl2ssSource::begin_connection() {
 
 void Hl2ssSource::lose_connection(const std::string& why) {
   if (lost_++ == 0) first_loss_ = why;
+  note(SourceFault::connection_lost);
   truncated_ += filled_ > 0 && filled_ < wanted_ ? 1 : 0;
   connection_.reset();
 }
@@ -242,6 +243,7 @@ bool Hl2ssSource::complete_part() {
 }
 
 void Hl2ssSource::name_malformed(const std::string& what) {
+  note(SourceFault::packet_refused);
   if (first_malformed_.empty()) first_malformed_ = what;
 }
 
@@ -265,7 +267,7 @@ void Hl2ssSource::take_packet() {
   ++packets_;
   if (payload.contents == AhatContents::empty) {
     ++empty_;
-    return;
+    return note(SourceFault::packet_refused);
   }
   if (payload.contents == AhatContents::wrong_size) {
     ++wrong_size_;
@@ -276,7 +278,7 @@ void Hl2ssSource::take_packet() {
   const Time stamp = time_of_file_time(heading.stamp);
   if (stamp.nanoseconds > k_live_stamp_max_ns) {
     ++stamps_out_of_range_;
-    return;
+    return note(SourceFault::stamp_refused);
   }
   // The counter restarts with the device; a connection that was lost keeps it.
   if (std::exchange(first_packet_, false) && stamp < newest_stamp_) {

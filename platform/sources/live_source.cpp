@@ -10,7 +10,7 @@
 namespace glint {
 
 LiveSource::LiveSource(const Camera& camera, LiveSettings settings)
-    : camera_(camera), settings_(settings), slots_(k_live_frames) {
+    : camera_(camera), settings_(settings), faults_(camera.period), slots_(k_live_frames) {
   const auto pixels = static_cast<std::size_t>(camera_.model.width) *
                       static_cast<std::size_t>(camera_.model.height);
   for (Slot& slot : slots_) {
@@ -44,6 +44,7 @@ bool LiveSource::wait(ArrivedFrame& arrived) {
     const Time now = monotonic_now();
     if (is_over(now)) {
       ended_ = true;  // later frames do not count as dropped
+      faults_.end();
       return false;
     }
     if (is_read_.wait_until(now + k_live_poll)) taken = take_oldest();
@@ -84,6 +85,7 @@ void LiveSource::restart_clock() {
 bool LiveSource::accept_rising(Time stamp, Time& newest) {
   if (stamp <= newest && newest - stamp < ClockMap::k_step) {
     ++backward_;
+    note(SourceFault::stamp_refused);
     return false;
   }
   newest = stamp;
@@ -92,10 +94,12 @@ bool LiveSource::accept_rising(Time stamp, Time& newest) {
 
 std::optional<Time> LiveSource::exposure_of(Time stamp, Time arrival) {
   const std::optional<Time> mapped = map_->map(stamp, arrival);
+  if (!mapped) note(SourceFault::stamp_refused);
   if (!started_ || !mapped || *mapped < clock_.epoch) return std::nullopt;
   const Time exposure = session_time(*mapped);
   if (exposure <= newest_exposure_) {
     ++backward_;
+    note(SourceFault::stamp_refused);
     return std::nullopt;
   }
   newest_exposure_ = exposure;
@@ -110,7 +114,10 @@ LiveSource::Slot* LiveSource::slot_for_next() {
     return &slots_[next_slot_];
   }
   const std::optional<std::size_t> oldest = take_oldest();
-  dropped_ += ended_ ? 0 : 1;
+  if (!ended_) {
+    ++dropped_;
+    note(SourceFault::frame_dropped);
+  }
   if (!oldest) return nullptr;
   used_[*oldest] = false;
   next_slot_ = *oldest;
@@ -124,16 +131,31 @@ void LiveSource::publish(Time mid_exposure, Time arrival, const HeadPose& head) 
   slot.arrival = session_time(arrival);
   slot.head = head.valid ? head : HeadPose{};
   check_head_pose(slot.head);
+  if (!slot.head.valid) note(SourceFault::head_pose_missing);
   without_pose_ += head.valid ? 0 : 1;
   poses_refused_ += head.valid && !slot.head.valid ? 1 : 0;
   slot.head.time = mid_exposure;
   used_[next_slot_] = true;
   order_[written_ % k_live_frames] = next_slot_;
   ++written_;
+  faults_.note_frame(slot.arrival);
   is_read_.post();
 }
 
+// Before the start and after the end nothing is lost.
+void LiveSource::note(SourceFault fault) noexcept {
+  if (started_ && !ended_) faults_.note(fault, session_time(monotonic_now()));
+}
+
 void LiveSource::add_to(SourceReport& report) const {
+  for (std::size_t kind = 0; kind < k_source_faults; ++kind) {
+    const auto fault = static_cast<SourceFault>(kind);
+    for (const SourceFaults::Event& event : faults_.events(fault)) {
+      report.events.push_back({name_of(fault), event.time, event.frames});
+    }
+  }
+  std::sort(report.events.begin(), report.events.end(),
+            [](const auto& a, const auto& b) { return a.time < b.time; });
   report.counts.insert(
       report.counts.end(),
       {{"frames_dropped", dropped_},

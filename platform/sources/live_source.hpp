@@ -42,6 +42,7 @@ class LiveSource : public FrameSource {
   }
   [[nodiscard]] Duration duration() const noexcept override { return settings_.duration; }
   [[nodiscard]] double delivered_part() const noexcept override;
+  [[nodiscard]] SourceFaults* faults() noexcept override { return &faults_; }
 
   // The rest is for the reading thread, and for report() after its end.
 
@@ -69,7 +70,9 @@ class LiveSource : public FrameSource {
   // cleared and counted.
   void publish(Time mid_exposure, Time arrival, const HeadPose& head);
   [[nodiscard]] std::uint64_t published() const { return written_; }
-  // Adds the counts and the failures of this class to the report.
+  // Reports a fault at once; the caller counts it.
+  void note(SourceFault fault) noexcept;
+  // Adds the counts, the failures and the faults of this class to the report.
   void add_to(SourceReport& report) const;
 
  private:
@@ -84,6 +87,7 @@ class LiveSource : public FrameSource {
   Camera camera_;
   LiveSettings settings_;
   SourceClock clock_;
+  SourceFaults faults_;
   std::vector<Slot> slots_;
   Release is_read_;
   // The frames numbered [taken_, written_) wait; frame n is in slot order_[n % k_live_frames].

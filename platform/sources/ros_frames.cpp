@@ -190,6 +190,7 @@ void RosFrames::add_pose(std::span<const std::uint8_t> message) {
 }
 
 void RosFrames::refuse(const std::string& why) {
+  frames_.note(SourceFault::packet_refused);
   if (refused_++ == 0) first_refusal_ = why;
 }
 

@@ -173,6 +173,7 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
   const Descriptor memory(got > 0 ? descriptor_in(message) : -1);
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (got <= 0) {
+    note(SourceFault::connection_lost);
     producer.reset();
     return;
   }
@@ -180,6 +181,7 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
     if (got == static_cast<ssize_t>(sizeof(glint_frames_frame)))
       return take_frame(*producer, bytes);
     ++malformed_;
+    note(SourceFault::packet_refused);
     producer.reset();
     return;
   }
@@ -252,7 +254,7 @@ void ShmSource::take_frame(Producer& producer, const void* message) {
   if (frame.slot >= producer.slots || frame.stamp_ns > k_live_stamp_max_ns ||
       frame.stamp_ns < -k_live_stamp_max_ns) {
     ++malformed_;
-    return;
+    return note(SourceFault::packet_refused);
   }
   copy_frame(producer, frame, arrival);
   (void)::send(producer.socket.get(), &frame.slot, sizeof frame.slot, MSG_NOSIGNAL);
@@ -271,7 +273,7 @@ void ShmSource::copy_frame(Producer& producer, const glint_frames_frame& frame, 
   if (slot == nullptr) return;
   if (!copy_pixels(producer, frame.slot, *slot)) {
     ++torn_;
-    return;
+    return note(SourceFault::packet_refused);
   }
   HeadPose head;
   head.valid = frame.has_pose != 0;

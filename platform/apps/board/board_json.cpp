@@ -5,6 +5,7 @@
 
 #include "platform/runtime/session/background_json.hpp"
 #include "platform/runtime/session/losses.hpp"
+#include "platform/runtime/session/source_json.hpp"
 
 namespace glint {
 namespace {
@@ -53,12 +54,6 @@ Json output_of(const SentTicksSummary& left) {
           {"longest_without_measurement_ms", tool.longest_without_measurement.seconds() * 1e3}};
 }
 
-Json source_of(const SessionResult& result) {
-  Json counts = Json::object();
-  for (const auto& [name, count] : result.source.counts) counts[name] = count;
-  return {{"text", result.source.text}, {"counts", counts}, {"failures", result.source.failures}};
-}
-
 Json losses_json(const SinkOutcome& result) {
   Json losses = Json::array();
   for (const Loss& loss : losses_of(result)) {
@@ -74,7 +69,7 @@ Json as_json(const CompanionResult& result) {
       {"frames", result.frames},
       {"frames_worst", result.frames_worst},
       {"frames_tracked", result.frames_tracked},
-      {"source", source_of(result)},
+      {"source", as_json(result.source)},
       {"ticks", result.ticks},
       {"ticks_late", result.ticks_late},
       {"ticks_skipped", result.ticks_skipped},

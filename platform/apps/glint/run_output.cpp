@@ -169,12 +169,6 @@ void add_rate_rows(const ordered_json& tool, const std::string& whose,
 
 }  // namespace
 
-ordered_json source_json(const SessionResult& result) {
-  ordered_json counts = ordered_json::object();
-  for (const auto& [name, count] : result.source.counts) counts[name] = count;
-  return {{"text", result.source.text}, {"counts", counts}, {"failures", result.source.failures}};
-}
-
 ordered_json output_of(const Cell& cell, const SessionResult& result) {
   ordered_json tools = ordered_json::array();
   for (int t = 0; t < cell.tools.count; ++t) {

@@ -16,8 +16,6 @@ inline constexpr double k_source_late_max = 0.01;
 
 // Per tool: ticks sent over CAN, by state, and the longest gaps.
 [[nodiscard]] nlohmann::ordered_json output_of(const Cell& cell, const SessionResult& result);
-// Of recorded frames: skipped time stamps, gaps, frames without head pose, unreadable frames.
-[[nodiscard]] nlohmann::ordered_json source_json(const SessionResult& result);
 [[nodiscard]] nlohmann::ordered_json losses_json(const SessionResult& result);
 
 // Returns name and value of each row; `summary` contains output_of().

@@ -14,6 +14,7 @@
 #include "platform/cells/correction_text.hpp"
 #include "platform/printable.hpp"
 #include "platform/runtime/session/background_json.hpp"
+#include "platform/runtime/session/source_json.hpp"
 #include "platform/tools/report/plots.hpp"
 
 namespace glint {
@@ -164,7 +165,7 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
       {"workers", cell.workers},
       {"frames", result.frames},
       {"frames_tracked", result.frames_tracked},
-      {"source", source_json(result)},
+      {"source", as_json(result.source)},
       {"marker_noise", noise_json(cell, result)},
       {"calibration", calibration_json(result)},
       {"frames_refused", accuracy.refused},

@@ -7,12 +7,14 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "kernels/image/frame.hpp"
 #include "kernels/pose/head_pose.hpp"
 #include "platform/formats/frame_truth.hpp"
+#include "platform/runtime/rt/source_faults.hpp"
 
 namespace glint {
 
@@ -37,6 +39,13 @@ struct SourceReport {
   std::string text;  // "recording out/run.mcap, level full"; empty: nothing to report
   std::vector<std::pair<std::string, std::uint64_t>> counts;  // by name, including zeros
   std::vector<std::string> failures;                          // one line per loss
+  // The first faults of each kind, in the order of time.
+  struct Event {
+    std::string_view fault;
+    Time time;
+    std::uint64_t frames = 0;  // published before it
+  };
+  std::vector<Event> events{};
 };
 
 class FrameSource {
@@ -57,6 +66,9 @@ class FrameSource {
   // late_frames(): number of late frames. Both thread-safe.
   [[nodiscard]] virtual bool late(Time /*now*/) const noexcept { return false; }
   [[nodiscard]] virtual int late_frames() const noexcept { return 0; }
+
+  // Faults as they happen; null: not live.
+  [[nodiscard]] virtual SourceFaults* faults() noexcept { return nullptr; }
 
   // Number of frames and their duration; 0: unknown in advance.
   [[nodiscard]] virtual std::size_t frame_count() const noexcept { return 0; }

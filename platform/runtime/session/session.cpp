@@ -78,6 +78,7 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
   options.truth = [&source](int tool, Time time) {
     return source.ground_truth_of_tool(tool, time);
   };
+  options.faults = source.faults();
   Sinks sinks(cell, options, unix_offset_ns);
   std::optional<KeyReader> keys;
   if (options.key_terminal) {

@@ -48,8 +48,8 @@ class SessionGroups {
 
   [[nodiscard]] const BackgroundGroup* background() const noexcept { return background_.get(); }
 
-  // Counts the ticks without a measurement while this source is late.
-  void watch(const FrameSource& source) noexcept { tick_.watch(source); }
+  // See TickGroup.
+  void watch(FrameSource& source) noexcept { tick_.watch(source); }
 
   // Call after all groups have ended.
   void report(SessionResult& result);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -75,6 +76,17 @@ void print_robot_warnings(const SessionGroups& groups, PrintedRobotWarnings& pri
   }
 }
 
+// Prints one line at the first fault of each kind. Do not call on a real-time thread.
+void print_source_faults(const SourceFaults* faults, std::array<bool, k_source_faults>& printed) {
+  for (std::size_t kind = 0; faults != nullptr && kind < k_source_faults; ++kind) {
+    const auto fault = static_cast<SourceFault>(kind);
+    if (printed[kind] || faults->of(fault) == 0) continue;
+    printed[kind] = true;
+    std::fprintf(stderr, "source: %s; further ones are counted\n",
+                 std::string(name_of(fault)).c_str());
+  }
+}
+
 }  // namespace
 
 void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& groups,
@@ -127,6 +139,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
   }
   const double all_s = (source.duration() + cell.lost_after).seconds();
   PrintedRobotWarnings printed;
+  std::array<bool, k_source_faults> printed_faults{};
   while (!frames_done || (reached_ns + tick_period_of(cell).nanoseconds < end_ns && !ends())) {
     // The source may be late; the ticks are not.
     const double reached_s = static_cast<double>(reached_ns) * 1e-9;
@@ -135,6 +148,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
     }
     groups.apply_changes(Time{reached_ns});
     print_robot_warnings(groups, printed);
+    print_source_faults(source.faults(), printed_faults);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   frame_thread.join();

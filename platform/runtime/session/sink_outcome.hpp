@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/runtime/rt/source_faults.hpp"
 #include "platform/runtime/session/output_figures.hpp"
 #include "platform/sinks/can/button_frames.hpp"
 #include "platform/sinks/can/can_sink.hpp"
@@ -23,7 +24,9 @@ struct SinkOptions {
   std::vector<std::string> timing_faults;  // this machine's timing faults, stated in all outputs
   bool by_rate = true;                     // statistics by frame rate
   MessageObserver* observer = nullptr;     // of the recorded messages
-  GroundTruthOfTool truth{};               // of run_session()'s source, for `by_rate`
+  // Of run_session()'s source: for `by_rate`, and for the diagnostics.
+  GroundTruthOfTool truth{};
+  const SourceFaults* faults = nullptr;
 };
 
 // Numbers of tool change requests from other DDS participants.

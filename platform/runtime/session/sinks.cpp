@@ -118,6 +118,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     settings.timing_faults = joined(options.timing_faults);
     settings.overruns = &overruns_;
     settings.losses = &losses_;
+    settings.source = options.faults;
     settings.calibration = &calibration_notes_;
     if (cell.mapping && !cell.mapping->model.empty()) settings.robot = &robot_notes_;
     dds_ = std::make_unique<DdsSink>(settings);

@@ -66,6 +66,9 @@ void TickGroup::run(const Now& now, Time woken, const graph::OverrunDecision* re
     frames_ = &output_->output<CanFrames>();
   }
   if (source_ != nullptr && source_->late(now.tick) && lacks_measurement()) ++ticks_source_late_;
+  if (source_ != nullptr && source_->faults() != nullptr) {
+    source_->faults()->check_silence(now.tick);
+  }
   losses_.count();
   if (!skipped_) send(now, woken);
   runner_->finish_activation(*output_);

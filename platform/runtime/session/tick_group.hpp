@@ -54,8 +54,9 @@ class TickGroup {
   // Call when no tick can follow: sends the heartbeat "stopped".
   void stop_safe() noexcept;
 
-  // From now on counts the ticks without a measurement while this source is late.
-  void watch(const FrameSource& source) noexcept { source_ = &source; }
+  // From now on counts the ticks without a measurement while this source is late, and notes its
+  // silences.
+  void watch(FrameSource& source) noexcept { source_ = &source; }
 
   // Call after the last tick. Flushes the CAN sink first.
   [[nodiscard]] const SentTicks& sent() noexcept;
@@ -100,7 +101,7 @@ class TickGroup {
   std::int64_t unix_offset_ns_;
   LossMonitor losses_;
   SentTicks sent_;
-  const FrameSource* source_ = nullptr;
+  FrameSource* source_ = nullptr;
   std::uint64_t ticks_source_late_ = 0;
   Sha256 hash_;
   std::uint64_t carried_version_ = 0;  // of the newest estimates that CAN has carried

@@ -9,6 +9,7 @@
 #include "platform/runtime/rt/followed_robot.hpp"
 #include "platform/runtime/rt/loss_counters.hpp"
 #include "platform/runtime/rt/overrun_counters.hpp"
+#include "platform/runtime/rt/source_faults.hpp"
 #include "platform/sinks/record/button_event.hpp"
 #include "platform/tools/report/calibration_findings.hpp"
 
@@ -48,6 +49,8 @@ struct DdsSettings {
   const OverrunCounters* overruns = nullptr;
   // Output losses so far (null: not counted; must outlive the sink).
   const LossCounters* losses = nullptr;
+  // Faults of a live source (null: none; must outlive the sink). A new one is published at once.
+  const SourceFaults* source = nullptr;
   // State of the followed robot (null: none; must outlive the sink).
   const RobotTrackingStatus* robot = nullptr;
   // Estimated calibration errors (null: not monitored; must outlive the sink).

@@ -9,6 +9,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr Clock::duration k_diagnostics_period = std::chrono::seconds(1);
+// Shortest gap of diagnostics with a new fault: less than one frame of 45 Hz.
+constexpr Clock::duration k_fault_gap = std::chrono::milliseconds(20);
 constexpr Duration k_receipts_limit = milliseconds(2000);
 
 // Only one thread writes each counter, so no read-modify-write is needed.
@@ -26,6 +28,7 @@ Clock::duration chrono_of(Duration duration) {
 DdsSink::DdsSink(const DdsSettings& settings)
     : tool_count_(static_cast<int>(settings.tool_names.size())),
       poll_period_(settings.poll_period),
+      source_(settings.source),
       publisher_(std::make_unique<PosePublisher>(settings)) {}
 
 DdsSink::~DdsSink() { stop(); }
@@ -78,12 +81,17 @@ DdsCounts DdsSink::counts() const noexcept {
 }
 
 void DdsSink::run() {
-  Clock::time_point diagnostics_due = Clock::now();
+  Clock::time_point diagnostics_due = Clock::now(), fault_due = diagnostics_due;
+  std::uint64_t faults = 0;
   while (!stopping_.load(std::memory_order_acquire)) {
     write_queued();
-    if (Clock::now() >= diagnostics_due) {
+    const Clock::time_point now = Clock::now();
+    const std::uint64_t newest = source_ != nullptr ? source_->total() : 0;
+    if (now >= diagnostics_due || (newest != faults && now >= fault_due)) {
       write_diagnostics();
-      diagnostics_due += k_diagnostics_period;
+      if (now >= diagnostics_due) diagnostics_due += k_diagnostics_period;
+      fault_due = now + k_fault_gap;
+      faults = newest;
     }
     std::this_thread::sleep_for(chrono_of(poll_period_));
   }

@@ -15,6 +15,7 @@
 #include "graph/latest.hpp"
 #include "graph/ring.hpp"
 #include "kernels/wire/pose_sample.hpp"
+#include "platform/runtime/rt/source_faults.hpp"
 #include "platform/sinks/dds/dds_settings.hpp"
 #include "platform/sinks/dds/frame_transforms.hpp"
 #include "platform/sinks/dds/pose_output.hpp"
@@ -92,6 +93,7 @@ class DdsSink final : public PoseOutput {
   std::atomic<bool> stopping_{false};
   int tool_count_;
   Duration poll_period_;
+  const SourceFaults* source_;
   std::unique_ptr<PosePublisher> publisher_;
   std::thread thread_;
 };

@@ -89,6 +89,22 @@ void Diagnostics::add_losses(const LossCounters& losses) {
   add_entry(lost ? k_error : k_ok, keep("glint: losses"), keep(lost ? text : "none"), values);
 }
 
+void Diagnostics::add_source(const SourceFaults& faults, std::uint64_t published) {
+  std::vector<Value>& values = values_.emplace_back();
+  for (std::size_t k = 0; k < k_source_faults; ++k) {
+    const auto fault = static_cast<SourceFault>(k);
+    values.push_back({keep(name_of(fault)), keep(std::to_string(faults.of(fault)))});
+  }
+  const bool is_new = faults.total() > published;
+  const std::string_view text = is_new            ? name_of(faults.newest())
+                                : faults.silent() ? name_of(SourceFault::no_frame)
+                                                  : "frames arrive";
+  add_entry(faults.silent() ? k_error
+            : is_new        ? k_warn
+                            : k_ok,
+            keep("glint: source"), keep(text), values);
+}
+
 void Diagnostics::add_robot(const RobotTrackingStatus& robot) {
   const std::int64_t followed = robot.followed.load(std::memory_order_relaxed);
   const std::int64_t jumps = robot.jumps.load(std::memory_order_relaxed);

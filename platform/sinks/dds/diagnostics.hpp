@@ -1,4 +1,4 @@
-// Message for /diagnostics: one entry per tool and one each for timing, losses, robot and
+// Message for /diagnostics: one entry per tool and one each for timing, losses, source, robot and
 // calibration.
 #pragma once
 
@@ -10,6 +10,7 @@
 #include "platform/runtime/rt/followed_robot.hpp"
 #include "platform/runtime/rt/loss_counters.hpp"
 #include "platform/runtime/rt/overrun_counters.hpp"
+#include "platform/runtime/rt/source_faults.hpp"
 #include "platform/sinks/dds/messages.hpp"
 #include "platform/tools/report/calibration_findings.hpp"
 
@@ -25,6 +26,9 @@ class Diagnostics {
   void add_timing(const OverrunCounters& overruns, std::string_view timing_faults);
   // Output losses so far; an error from the first loss on.
   void add_losses(const LossCounters& losses);
+  // Faults of a live source: an error while no frame arrives, a warning if the number of faults
+  // exceeds `published`, that of the previous message.
+  void add_source(const SourceFaults& faults, std::uint64_t published);
   // Whether the robot was detected at its assumed pose.
   void add_robot(const RobotTrackingStatus& robot);
   // Calibration errors that are larger than stated.

@@ -179,6 +179,10 @@ void PosePublisher::write_diagnostics(const SinkCounts& counts) {
   }
   if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.timing_faults);
   if (settings_.losses != nullptr) text.add_losses(*settings_.losses);
+  if (settings_.source != nullptr) {
+    text.add_source(*settings_.source, faults_published_);
+    faults_published_ = settings_.source->total();
+  }
   if (settings_.robot != nullptr) text.add_robot(*settings_.robot);
   if (settings_.calibration != nullptr) text.add_calibration(settings_.calibration->all());
   const DiagnosticsMessage message = text.message(Time{dds_time()});

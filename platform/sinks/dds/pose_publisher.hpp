@@ -76,6 +76,7 @@ class PosePublisher {
   std::vector<ToolStream> streams_;
   std::uint64_t others_failed_ = 0;
   dds_entity_t tf_ = 0, tf_static_ = 0, diagnostics_ = 0;
+  std::uint64_t faults_published_ = 0;  // of a live source
 };
 
 }  // namespace glint

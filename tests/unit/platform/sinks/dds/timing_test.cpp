@@ -1,9 +1,11 @@
 // Timing fields as readers receive them: exposure time, publication time and validity of a pose;
 // overruns and losses.
+#include <chrono>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "platform/runtime/rt/source_faults.hpp"
 #include "platform/sinks/dds/dds_sink.hpp"
 #include "platform/sinks/dds/messages.hpp"
 #include "platform/sinks/dds/topic_names.hpp"
@@ -227,6 +229,43 @@ TEST_F(TimingFields, SayInDiagnosticsWhatWasLost) {
   EXPECT_EQ(lost.message, "lost: CAN 3, recording 12072");
   EXPECT_EQ(lost.values.at("recording"), "12072");
   EXPECT_EQ(lost.values.at("files"), "0");
+}
+
+TEST_F(TimingFields, NameAFaultOfTheSourceAtOnce) {
+  SourceFaults faults(milliseconds(20));
+  DdsSettings settings = test_settings();
+  settings.source = &faults;
+  DdsSink sink(settings);
+  Peer peer(settings);
+  const dds_entity_t reader = peer.reader(diagnostics_type(), k_diagnostics_topic,
+                                          Reliability::reliable, Durability::volatile_data, 1000);
+  ASSERT_TRUE(peer.wait_for_discovery(sink));
+  sink.start();
+  DiagnosticEntry found;
+  const auto receive_until = [&](const char* key, int count) {
+    do {
+      ASSERT_EQ(take<DiagnosticsMessage>(
+                    reader, 1, [&](const auto& m) { found = entry_of(m, "glint: source"); }),
+                1u);
+    } while (found.values.at(key) != std::to_string(count));
+  };
+  receive_until("connection lost", 0);
+  EXPECT_EQ(found.message, "frames arrive");
+  EXPECT_EQ(found.level, 0);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 1; i <= 20; ++i) {
+    faults.note(SourceFault::connection_lost, Time{});
+    receive_until("connection lost", i);
+    EXPECT_EQ(found.message, "connection lost");
+    EXPECT_EQ(found.level, 1);
+  }
+  // The regular ones, one a second, would take 20 s.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  faults.note_frame(Time{} + milliseconds(1000));
+  faults.check_silence(Time{} + milliseconds(1034));
+  receive_until("no frame", 1);
+  EXPECT_EQ(found.message, "no frame");
+  EXPECT_EQ(found.level, 2);
 }
 
 TEST_F(TimingFields, SayInDiagnosticsThatTheSourceIsTooSlow) {
