@@ -67,8 +67,10 @@ void CellParser::read_source(const toml::table* table) {
   }
   cell.source.reliable = reader.boolean("reliable", false);
   cell.source.host = reader.text("host", "");
-  cell.source.port = static_cast<int>(reader.integer("port", cell.source.port, 1, 65535));
+  cell.source.port = static_cast<int>(reader.integer("port", cell.source.port, 0, 65535));
   cell.source.divisor = static_cast<int>(reader.integer("divisor", cell.source.divisor, 1, 255));
+  cell.source.clock_port =
+      static_cast<int>(reader.integer("clock_port", cell.source.clock_port, 0, 65535));
   cell.source.position = cell.file + ":" + std::to_string(reader.line_of("kind")) + ": source";
   reader.done();
   const auto of_kinds = [&](std::initializer_list<const char*> kinds,
@@ -86,7 +88,7 @@ void CellParser::read_source(const toml::table* table) {
     }
   };
   of_kinds({"hl2ss_file", "hl2ss"}, {"calibration"});
-  of_kinds({"hl2ss"}, {"host", "port", "divisor"});
+  of_kinds({"hl2ss"}, {"host", "port", "divisor", "clock_port"});
   of_kinds({"dds", "rosbag"},
            {"reflectivity_topic", "depth_topic", "camera_info_topic", "pose_topic", "world_frame"});
   of_kinds({"dds"}, {"domain", "reliable"});

@@ -68,8 +68,9 @@ struct SourceSettings {
   std::optional<int> domain;  // dds; empty: that of [dds]
   bool reliable = false;      // dds: requests lost messages again
   std::string host;           // hl2ss: address or name of the headset
-  int port = 3804;            // hl2ss: of its AHAT stream
+  int port = 0;               // hl2ss: of the camera's stream; 0: its default
   int divisor = 1;            // hl2ss: one of that many frames is sent
+  int clock_port = 3809;      // hl2ss: remote configuration, for its clock; 0: not asked
 };
 
 // Source of simulated frames; the other parameters of the simulator have one declared default.

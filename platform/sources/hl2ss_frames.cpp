@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "platform/formats/image_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/read_file.hpp"
 #include "platform/sources/file_time.hpp"
+#include "platform/sources/hl2ss_long_throw.hpp"
 #include "platform/sources/hl2ss_wire.hpp"
 
 namespace glint {
@@ -143,20 +143,9 @@ void Hl2ssFrames::read_packet(std::uint64_t at, std::uint32_t bytes, ReadFrame& 
   } else {
     if (bytes <= k_hl2ss_sensor_ticks_bytes)
       refuse(std::to_string(bytes) + " bytes", "a PNG image");
-    const std::string_view png(reinterpret_cast<const char*>(packet_.data()),
-                               bytes - k_hl2ss_sensor_ticks_bytes);
-    const Image picture =
-        png_of(png, file_.path() + ":byte " + std::to_string(at), "a PNG image", true);
-    if (picture.channels != 4 || picture.bits != 8 || picture.values.size() != 2 * plane_bytes) {
-      refuse("an image of " + std::to_string(picture.width) + " x " +
-                 std::to_string(picture.height) + " pixels",
-             "the bytes of two planes as blue, green, red and alpha");
-    }
-    planes.resize(picture.values.size());
-    for (std::size_t i = 0; i < planes.size(); ++i) {  // the file's order is red, green, blue
-      const std::size_t channel = i % 4 == 3 ? 3 : 2 - i % 4;
-      planes[i] = static_cast<std::uint8_t>(picture.values[i - i % 4 + channel]);
-    }
+    planes = hl2ss_long_throw_planes(
+        std::span<const std::uint8_t>(packet_).first(bytes - k_hl2ss_sensor_ticks_bytes), camera_,
+        file_.path() + ":byte " + std::to_string(at));
   }
   PixelPlane depth = plane_of(planes.data(), "depth");
   fill_pixels(plane_of(planes.data() + plane_bytes, "ab"), std::move(depth), camera_, frame.pixels);

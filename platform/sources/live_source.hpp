@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "platform/formats/camera.hpp"
@@ -24,10 +26,16 @@ inline constexpr Duration k_live_poll = milliseconds(50);
 // Largest magnitude of a stamp: the difference of two fits into 64 bits.
 inline constexpr std::int64_t k_live_stamp_max_ns = 4'000'000'000'000'000'000;
 
+// Decoder of hl2ss's long throw frames (hl2ss_long_throw.hpp).
+using LongThrowPlanes = std::vector<std::uint8_t> (*)(std::span<const std::uint8_t> png,
+                                                      const Camera& camera,
+                                                      const std::string& name);
+
 struct LiveSettings {
-  Duration duration;                        // of the run; 0: until it is stopped
-  const std::atomic<bool>* stop = nullptr;  // true: ends the run
-  std::int64_t frames = 0;                  // ends the run after this number; 0: no limit
+  Duration duration;                            // of the run; 0: until it is stopped
+  const std::atomic<bool>* stop = nullptr;      // true: ends the run
+  std::int64_t frames = 0;                      // ends the run after this number; 0: no limit
+  LongThrowPlanes long_throw_planes = nullptr;  // null: a program without PNG refuses long throw
 };
 
 class LiveSource : public FrameSource {

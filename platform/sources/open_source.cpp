@@ -15,6 +15,7 @@
 #include "platform/sources/file_source.hpp"
 #include "platform/sources/folder_frames.hpp"
 #include "platform/sources/hl2ss_frames.hpp"
+#include "platform/sources/hl2ss_long_throw.hpp"
 #include "platform/sources/open_live_source.hpp"
 #include "platform/sources/recording_frames.hpp"
 #include "platform/sources/rosbag_frames.hpp"
@@ -123,6 +124,7 @@ std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance, Li
     require_lens(cell);
     return nullptr;
   }
+  live.long_throw_planes = hl2ss_long_throw_planes;
   if (auto opened = open_live_source(cell, live)) return opened;
   if (source.path.empty()) {
     throw InputError(source.position + ".path: missing; expected the file or folder of the " +
