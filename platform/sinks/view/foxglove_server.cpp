@@ -1,11 +1,7 @@
 #include "platform/sinks/view/foxglove_server.hpp"
 
-#include <arpa/inet.h>
 #include <libwebsockets.h>
-#include <netinet/in.h>
 #include <pthread.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +13,7 @@
 #include <vector>
 
 #include "platform/input_error.hpp"
+#include "platform/sinks/view/free_port.hpp"
 #include "platform/sinks/view/view_queue.hpp"
 
 namespace glint {
@@ -47,23 +44,6 @@ bool is_accepted_origin(std::string_view origin) {
     return false;
   }
   return origin != "null";  // a program with a scheme of its own; no page of the web can state it
-}
-
-// libwebsockets waits for an address that this machine lacks instead of reporting it, and loses
-// memory on a port that is in use.
-bool is_free(const std::string& address, int port) {
-  sockaddr_in wanted{};
-  wanted.sin_family = AF_INET;
-  wanted.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (inet_pton(AF_INET, address.c_str(), &wanted.sin_addr) != 1) return false;
-  const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return false;
-  const int on = 1;  // as libwebsockets: a port is free although old connections wait on it
-  (void)::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  const bool bound =
-      ::bind(descriptor, reinterpret_cast<const sockaddr*>(&wanted), sizeof wanted) == 0;
-  ::close(descriptor);
-  return bound;
 }
 
 }  // namespace
@@ -236,7 +216,7 @@ FoxgloveServer::FoxgloveServer(const FoxgloveSettings& settings)
   // refused.
   info.fd_limit_per_thread = static_cast<unsigned>(settings.clients_max) + 16;
   info.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
-  if (is_free(settings.address, settings.port)) body_->context = lws_create_context(&info);
+  if (is_free_port(settings.address, settings.port)) body_->context = lws_create_context(&info);
   if (body_->context != nullptr) {
     body_->port = lws_get_vhost_listen_port(lws_get_vhost_by_name(body_->context, "default"));
   }
