@@ -28,6 +28,7 @@
 #include "platform/input_error.hpp"
 #include "platform/runtime/session/node_probe.hpp"
 #include "platform/runtime/session/simulated_run.hpp"
+#include "platform/sinks/headset/headset_server.hpp"
 #include "platform/sinks/view/foxglove_server.hpp"
 #include "platform/sources/open_live_source.hpp"
 #include "platform/sources/open_source.hpp"
@@ -52,6 +53,8 @@ struct RunArguments {
   bool keys = false;
   bool views = false;
   FoxgloveSettings view;
+  bool shows_on_headset = false;
+  HeadsetSettings headset;
   double source_frame_ms = 0;
   bool recorded = false;  // glint track
   std::string source, kind;
@@ -102,6 +105,28 @@ std::unique_ptr<FoxgloveServer> open_view(const RunArguments& arguments, const C
   return server;
 }
 
+// The return path to a headset's display; null without --headset.
+std::unique_ptr<HeadsetServer> open_headset(const RunArguments& arguments, const Cell& cell) {
+  if (!arguments.shows_on_headset) return nullptr;
+  HeadsetSettings settings = arguments.headset;
+  for (int t = 0; t < cell.tools.count; ++t) {
+    settings.tool_names.emplace_back(cell.tools.items[static_cast<std::size_t>(t)].name.data());
+  }
+  auto server = std::make_unique<HeadsetServer>(settings);
+  std::printf("headset    ws://%s:%d, protocol glint.headset.v1\n", settings.address.c_str(),
+              server->port());
+  std::fflush(stdout);
+  return server;
+}
+
+nlohmann::ordered_json headset_json(const HeadsetCounts& counts) {
+  return {{"clients", counts.clients},
+          {"refused", counts.refused},
+          {"messages", counts.messages},
+          {"not_taken", counts.not_taken},
+          {"queue_full", counts.queue_full}};
+}
+
 nlohmann::ordered_json view_json(const FoxgloveCounts& counts) {
   return {{"clients", counts.clients},
           {"refused", counts.refused},
@@ -127,6 +152,7 @@ int report(const Cell& cell, const SessionOptions& options, const std::string& j
   const auto write_summary = [&] {
     nlohmann::ordered_json summary = summary_of(cell, options.plan, result);
     if (view != nullptr) summary["view"] = view_json(view->counts());
+    if (result.headset) summary["headset"] = headset_json(*result.headset);
     write_json(json_file, summary);
   };
   (void)written(write_summary, result);
@@ -137,6 +163,12 @@ int report(const Cell& cell, const SessionOptions& options, const std::string& j
                 static_cast<unsigned long long>(counts.clients),
                 static_cast<unsigned long long>(counts.messages),
                 static_cast<unsigned long long>(counts.dropped));
+  }
+  if (result.headset) {
+    std::printf("headset    %llu clients, %llu messages sent, %llu not taken\n",
+                static_cast<unsigned long long>(result.headset->clients),
+                static_cast<unsigned long long>(result.headset->messages),
+                static_cast<unsigned long long>(result.headset->not_taken));
   }
   const std::size_t printed = result.files.size();
   const bool plotted = written([&] { draw_plots(options.out, result); }, result);
@@ -172,6 +204,8 @@ int run(const RunArguments& arguments) {
   const FolderLock lock(arguments.out);
   const std::unique_ptr<FoxgloveServer> view = open_view(arguments, cell);
   options.observer = view.get();
+  const std::unique_ptr<HeadsetServer> headset = open_headset(arguments, cell);
+  options.headset = headset.get();
   Progress progress("tracking");
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
@@ -185,6 +219,10 @@ int run(const RunArguments& arguments) {
   progress.clear();
   room.release();
   if (view != nullptr) view->close();
+  if (headset != nullptr) {
+    headset->close();
+    result.headset = headset->counts();
+  }
   return report(cell, options, arguments.json, view.get(), result);
 }
 
@@ -205,11 +243,23 @@ void add_common(CLI::App& command, RunArguments& arguments) {
   auto* const view = command.add_option("--view", arguments.view.port,
                                         "live view for Foxglove: WebSocket port, default 8765");
   view->expected(0, 1)->check(in_range(0, 65535));
-  command.parse_complete_callback([&arguments, view] { arguments.views = view->count() > 0; });
   command
       .add_option("--view-address", arguments.view.address,
                   "address that the view listens on; default: this machine only")
       ->needs(view);
+  auto* const headset =
+      command.add_option("--headset", arguments.headset.port,
+                         "pen, strokes and robot for a headset's display: WebSocket port, default "
+                         "8766");
+  headset->expected(0, 1)->check(in_range(0, 65535));
+  command
+      .add_option("--headset-address", arguments.headset.address,
+                  "address that it listens on; default: this machine only")
+      ->needs(headset);
+  command.parse_complete_callback([&arguments, view, headset] {
+    arguments.views = view->count() > 0;
+    arguments.shows_on_headset = headset->count() > 0;
+  });
   command
       .add_option("--method", arguments.method, "glint or baseline (Puljiz et al.; formerly seed)")
       ->check(CLI::IsMember({"glint", "baseline", "seed"}));

@@ -1,6 +1,7 @@
 #include "platform/runtime/session/losses.hpp"
 
 #include <cerrno>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -22,7 +23,10 @@ std::string counted(std::uint64_t count, const char* what) {
 class Losses {
  public:
   void add(LossKind kind, std::uint64_t count, const std::string& text) {
-    items_.push_back({std::string(name_of(kind)), count, text});
+    add(name_of(kind), count, text);
+  }
+  void add(std::string_view kind, std::uint64_t count, const std::string& text) {
+    items_.push_back({std::string(kind), count, text});
   }
   [[nodiscard]] std::vector<Loss> take() { return std::move(items_); }
 
@@ -72,6 +76,20 @@ void add_recording(const RecordingOutcome& recording, Losses& losses) {
   }
 }
 
+void add_headset(const HeadsetCounts& headset, Losses& losses) {
+  constexpr std::string_view k_kind = "headset";
+  if (headset.clients == 0) losses.add(k_kind, 0, "no client connected");
+  if (headset.not_taken > 0) {
+    losses.add(
+        k_kind, headset.not_taken,
+        counted(headset.not_taken, "messages replaced by newer ones: a client reads slowly"));
+  }
+  if (headset.queue_full > 0) {
+    losses.add(k_kind, headset.queue_full,
+               counted(headset.queue_full, "samples not taken, queue full"));
+  }
+}
+
 }  // namespace
 
 std::vector<Loss> losses_of(const SinkOutcome& outcome) {
@@ -84,6 +102,7 @@ std::vector<Loss> losses_of(const SinkOutcome& outcome) {
     losses.add(LossKind::files, outcome.files_lost,
                counted(outcome.files_lost, "lines not written: ") + why);
   }
+  if (outcome.headset) add_headset(*outcome.headset, losses);
   for (const std::string& file : outcome.not_written) losses.add(LossKind::files, 0, cause(file));
   return losses.take();
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "platform/sinks/dds/dds_inputs.hpp"
 #include "platform/sinks/dds/dds_sink.hpp"
 #include "platform/sinks/dds/reader_result.hpp"
+#include "platform/sinks/headset/headset_output.hpp"
 #include "platform/sinks/record/message_observer.hpp"
 #include "platform/sinks/record/recording.hpp"
 
@@ -24,6 +26,7 @@ struct SinkOptions {
   std::vector<std::string> timing_faults;  // this machine's timing faults, stated in all outputs
   bool by_rate = true;                     // statistics by frame rate
   MessageObserver* observer = nullptr;     // of the recorded messages
+  HeadsetOutput* headset = nullptr;        // display of a headset
   // Of run_session()'s source: for `by_rate`, and for the diagnostics.
   GroundTruthOfTool truth{};
   const SourceFaults* faults = nullptr;
@@ -46,6 +49,7 @@ struct SinkOutcome {
   bool dds_was_read = false;
   std::string dds_reader_error;  // why the reader process has no result, if there was one
   std::shared_ptr<const OutputByRate> by_rate;  // null: not requested
+  std::optional<HeadsetCounts> headset;         // null: not requested
   std::uint64_t files_lost = 0;                 // lines missing in TUM and CSV files
   std::string files_error;                      // first write error of these
   RecordingOutcome recording;

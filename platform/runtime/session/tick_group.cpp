@@ -114,6 +114,9 @@ void TickGroup::offer_samples() noexcept {
     if (sinks_.dds != nullptr) (void)sinks_.dds->offer(sample);
     if (sinks_.files != nullptr) sinks_.files->offer(sample, newest);
     if (sinks_.record) sinks_.record(record);
+    if (sinks_.headset != nullptr) {
+      sinks_.headset->offer({sample, output_->latest<RobotFrame>().value(), {unix_offset_ns_}});
+    }
   }
 }
 

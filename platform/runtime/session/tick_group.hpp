@@ -18,6 +18,7 @@
 #include "platform/runtime/session/sent_ticks.hpp"
 #include "platform/sinks/can/can_sink.hpp"
 #include "platform/sinks/dds/pose_output.hpp"
+#include "platform/sinks/headset/headset_output.hpp"
 #include "platform/sinks/record/recorder.hpp"
 #include "platform/sinks/record/sha256.hpp"
 
@@ -35,6 +36,7 @@ struct TickSinks {
   LossCounters* losses = nullptr;      // counts of losses
   // Called with each output record; a replay compares it.
   std::function<void(std::span<const std::uint8_t>)> record{};
+  HeadsetOutput* headset = nullptr;
 };
 
 class TickGroup {
