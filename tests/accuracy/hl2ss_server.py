@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Stand-in for the hl2ss server of a HoloLens 2: AHAT raw, its calibration, the remote configuration.
+"""Stand-in for the hl2ss server of a HoloLens 2: AHAT raw or long throw, its calibration, the remote
+configuration.
 
   tests/accuracy/hl2ss_server.py RECORDING_OR_FOLDER --rate 45 --calibration ahat.bin
 
@@ -19,6 +20,8 @@ import struct
 import sys
 import threading
 import time
+
+import frame_formats as formats
 
 SIDE = 512
 PLANE_BYTES = 2 * SIDE * SIDE
@@ -44,6 +47,13 @@ class Packet:
 def ahat_payload(depth, ab, ticks):
     """Of two planes as bytes; raw mode has no blob of z of its own."""
     return struct.pack("<II", 0, len(depth) + len(ab)) + depth + ab + struct.pack("<Q", ticks)
+
+
+def long_throw_payload(depth, ab, width, height, ticks):
+    """The planes' bytes as blue, green, red and alpha of a PNG image."""
+    planes = bytearray(depth + ab)
+    planes[0::4], planes[2::4] = planes[2::4], planes[0::4]  # a PNG's order is red, green, blue
+    return formats.png_rgba(width, height, bytes(planes)) + struct.pack("<Q", ticks)
 
 
 def read_recording(path):
@@ -96,6 +106,17 @@ class Play:
     random_seed: int = 1
     stamps_begin: int = 36_000_000_000  # QPC at the first packet: an hour after the device's start
     clock_offset: int = 133_800_000_000_000_000  # FILETIME - QPC
+    long_throw: bool = False  # the stream's configuration: mode, divisor, u32 PNG filter
+    scene: bool = False  # the packets are a scene at RATE_HZ: chosen by time, forwards and backwards
+
+
+@dataclasses.dataclass
+class Sent:
+    number: int
+    stamp: int       # as sent
+    kind: str | None  # of the fault
+    exposure_ns: int  # of the pixels, on this machine's monotonic clock
+    at_ns: int       # likewise, after the last byte; of a fault before the first
 
 
 def with_fault(packet, kind, before):
@@ -183,8 +204,11 @@ class Server:
             self.configurations.append(configuration)
             client.sendall(self.calibration)
             return
-        configuration += self.receive(client, 9)
-        configuration += self.receive(client, 16 * configuration[9])
+        if self.play.long_throw:
+            configuration += self.receive(client, 5)
+        else:
+            configuration += self.receive(client, 9)
+            configuration += self.receive(client, 16 * configuration[9])
         self.configurations.append(configuration)
         while not self.closing.is_set():
             if None not in (self.play.count, self.begin) and self.number - self.begin >= self.play.count:
@@ -206,25 +230,38 @@ class Server:
         self.due_ns = now if self.due_ns is None else max(self.due_ns + period, now)
         return self.due_ns
 
+    def packet_at(self, exposure):
+        """(packet, its exposure): of a scene the frame nearest in time."""
+        if not self.play.scene:
+            return self.packets[self.number % len(self.packets)], exposure
+        step = round((exposure - self.first_ns) * RATE_HZ / 1e9)
+        last = len(self.packets) - 1
+        index = step % (2 * last)
+        return (self.packets[index if index <= last else 2 * last - index],
+                self.first_ns + step * 1_000_000_000 // RATE_HZ)
+
     def send_packet(self, client, with_pose, divisor):
         """False: the connection ends here."""
         number, play = self.number, self.play
         kind = None if self.begin is None else play.faults.get(number - self.begin)
-        packet = self.packets[number % len(self.packets)]
-        exposure = self.exposure_ns(divisor)
+        packet, exposure = self.packet_at(self.exposure_ns(divisor))
         delay_ms = play.latency_ms + self.random.uniform(*play.jitter_ms)
         self.closing.wait(max(0, exposure + 1e6 * delay_ms - time.monotonic_ns()) * 1e-9)
         self.number += divisor if play.rate_hz is None else 1
-        if kind == "cut":
-            return False
-        if kind in ("stall", "silence"):
-            self.closing.wait(play.stall_s if kind == "stall" else play.silence_s)
-            return True
+        if kind in ("cut", "stall", "silence"):
+            self.sent.append(Sent(number, 0, kind, exposure, time.monotonic_ns()))
+            self.closing.wait({"cut": 0, "stall": play.stall_s, "silence": play.silence_s}[kind])
+            return kind != "cut"
         stamp = play.stamps_begin + (exposure - self.first_ns) // 100
-        before = self.sent[-1][1] if self.sent else stamp
+        before = next((s.stamp for s in reversed(self.sent) if s.stamp), stamp)
         packet = dataclasses.replace(packet, stamp=stamp, pose=packet.pose if with_pose else b"")
+        sent = Sent(number, stamp if kind not in ("doubled", "backward") else before, kind, exposure,
+                    time.monotonic_ns())
+        if kind is not None:  # the client may end the connection meanwhile
+            self.sent.append(sent)
         client.sendall(with_fault(packet, kind, before))
-        self.sent.append((number, stamp if kind not in ("doubled", "backward") else before, kind))
+        if kind is None:
+            self.sent.append(dataclasses.replace(sent, at_ns=time.monotonic_ns()))
         return kind != "half"
 
     def close(self):
