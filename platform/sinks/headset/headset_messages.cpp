@@ -78,11 +78,19 @@ Json buttons_json(std::uint8_t held) {
 HeadsetMessages::HeadsetMessages(std::vector<std::string> tool_names)
     : tool_names_(std::move(tool_names)), pens_(tool_names_.size()) {}
 
-void HeadsetMessages::publish(std::size_t slot, Duration period, bool at_once) {
+void HeadsetMessages::mark(std::size_t slot, Duration period, bool at_once) {
   Slot& to = slots_[slot];
-  if (to.version > 0 && !at_once && newest_ - to.published < period) return;
-  ++to.version;
-  to.published = newest_;
+  const bool is_first = to.version == 0 && !to.is_due;
+  if (!is_first && !at_once && newest_ - to.due < period) return;
+  to.is_due = true;
+  to.due = newest_;
+}
+
+void HeadsetMessages::publish_due() {
+  for (Slot& slot : slots_) {
+    slot.version += slot.is_due ? 1 : 0;
+    slot.is_due = false;
+  }
 }
 
 void HeadsetMessages::add(const HeadsetSample& given) {
@@ -91,22 +99,24 @@ void HeadsetMessages::add(const HeadsetSample& given) {
   newest_ = given.sample.tick;
   const bool changed = pens_[tool].sample.state != given.sample.state;
   pens_[tool] = given;
-  publish(tool, k_pen_period, changed);
+  mark(tool, k_pen_period, changed);
   if (tool != 0) return;  // draws, and states the robot for all
   add_robot(given.robot);
   add_to_stroke(given.sample);
 }
 
 void HeadsetMessages::add_robot(const RobotFrame& robot) {
-  if (!knows_robot(robot) && slots_[k_robot_slot].version == 0) return;
+  const Slot& slot = slots_[k_robot_slot];
+  const bool is_first = slot.version == 0 && !slot.is_due;
+  if (!knows_robot(robot) && is_first) return;
   const auto same = [](const Pose& a, const Pose& b) {
     return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
   };
-  const bool changed = slots_[k_robot_slot].version == 0 || robot_.state != robot.state ||
-                       !same(robot_.T_world_robot, robot.T_world_robot);
+  const bool changed =
+      is_first || robot_.state != robot.state || !same(robot_.T_world_robot, robot.T_world_robot);
   if (changed) robot_changed_ = newest_;
   robot_ = robot;
-  publish(k_robot_slot, changed ? k_pen_period : k_robot_period, false);
+  mark(k_robot_slot, changed ? k_pen_period : k_robot_period, false);
 }
 
 void HeadsetMessages::add_to_stroke(const PoseSample& sample) {
@@ -123,7 +133,7 @@ void HeadsetMessages::add_to_stroke(const PoseSample& sample) {
   }
   if (ends && !stroke.points.empty()) {
     stroke.done = true;
-    publish(k_stroke_slot + index, k_stroke_period, true);
+    mark(k_stroke_slot + index, k_stroke_period, true);
   }
   const auto pose = world_pose(sample, robot_);
   if (!draws || sample.state != TrackState::measured || !pose) return;
@@ -138,7 +148,7 @@ void HeadsetMessages::add_to_stroke(const PoseSample& sample) {
   }
   stroke.points.push_back(pose->translation);
   stroke.newest = sample.measurement;
-  publish(k_stroke_slot + index, k_stroke_period, false);
+  mark(k_stroke_slot + index, k_stroke_period, false);
 }
 
 std::string HeadsetMessages::text(std::size_t slot) const {

@@ -1,7 +1,7 @@
 // Messages for a headset's display, in Unity's axes: each pen, the robot, the newest strokes.
 //
-// A message has a slot. Its contents are the newest; its version rises at a limited rate. A client
-// sends a slot whose version it has not sent: what it missed is replaced. README.md: the format.
+// A message has a slot. Its contents are the newest; its version rises at a limited rate. A slot is
+// sent to each client that was not sent this version. README.md: the format.
 #pragma once
 
 #include <array>
@@ -28,6 +28,8 @@ class HeadsetMessages {
 
   // Requires rising ticks of each tool. No heap except for a stroke's first points.
   void add(const HeadsetSample& given);
+  // Raises the versions that are due, each by one. Call after the samples that have arrived.
+  void publish_due();
 
   // 0: the slot has no message.
   [[nodiscard]] std::uint64_t version(std::size_t slot) const { return slots_[slot].version; }
@@ -37,7 +39,8 @@ class HeadsetMessages {
  private:
   struct Slot {
     std::uint64_t version = 0;
-    Time published;
+    bool is_due = false;
+    Time due;  // the last time
   };
   struct Stroke {
     std::uint64_t id = 0;
@@ -47,7 +50,7 @@ class HeadsetMessages {
     std::vector<Vector3> points;  // in the world
   };
 
-  void publish(std::size_t slot, Duration period, bool at_once);
+  void mark(std::size_t slot, Duration period, bool at_once);
   void add_robot(const RobotFrame& robot);
   void add_to_stroke(const PoseSample& sample);
   [[nodiscard]] std::string pen_text(const HeadsetSample& pen) const;

@@ -102,6 +102,7 @@ void HeadsetServer::Body::on_timer(lws_sorted_usec_list_t* list) {
 void HeadsetServer::Body::take_samples() {
   HeadsetSample sample;
   for (int i = 0; i < k_queue_size && ring.pop(sample); ++i) messages.add(sample);
+  messages.publish_due();
   for (const HeadsetClient* client : clients) {
     if (is_behind(*client)) lws_callback_on_writable(client->connection);
   }

@@ -29,6 +29,11 @@ HeadsetSample sample_at(int tick) {
   return given;
 }
 
+void add(HeadsetMessages& messages, const HeadsetSample& sample) {
+  messages.add(sample);
+  messages.publish_due();
+}
+
 Json message(const HeadsetMessages& messages, std::size_t slot) {
   return Json::parse(messages.text(slot));
 }
@@ -45,7 +50,7 @@ TEST(HeadsetMessages, MirrorZOfVectorsAndXAndYOfRotations) {
   HeadsetSample given = sample_at(1);
   // 90 degrees about x: the shaft's z axis points along -y.
   given.sample.pose.rotation = Quaternion(std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2, 0, 0);
-  messages.add(given);
+  add(messages, given);
   const Json pen = message(messages, 0);
   EXPECT_EQ(pen["type"], "pen");
   EXPECT_EQ(pen["unix_ms"], 1'700'000'000'004);
@@ -62,37 +67,46 @@ TEST(HeadsetMessages, ConvertTheRobotsFrameToTheWorld) {
   HeadsetMessages messages({"pen"});
   HeadsetSample given = sample_at(1);
   given.sample.frame = ReferenceFrame::robot;
-  messages.add(given);
+  add(messages, given);
   EXPECT_TRUE(message(messages, 0)["tip_m"].is_null()) << "no robot";
   EXPECT_EQ(messages.version(k_robot), 0u);
   given.sample.tick = given.sample.tick + k_tick;
   given.robot.state = RegistrationState::given;
   given.robot.T_world_robot.translation = {1, 2, 3};
-  messages.add(given);
+  add(messages, given);
   expect_near(message(messages, 0)["tip_m"], {1.1, 2.2, -2.7});
   expect_near(message(messages, k_robot)["position_m"], {1, 2, -3});
   given.robot.in_reference = true;
-  messages.add(given);
+  add(messages, given);
   EXPECT_TRUE(message(messages, 0)["tip_m"].is_null()) << "in a reference body's frame";
   EXPECT_TRUE(message(messages, k_robot)["position_m"].is_null());
 }
 
 TEST(HeadsetMessages, RiseThirtyTimesASecondAndAtAChangeOfState) {
   HeadsetMessages messages({"pen", "board"});
-  for (int tick = 1; tick <= 250; ++tick) messages.add(sample_at(tick));
+  for (int tick = 1; tick <= 250; ++tick) add(messages, sample_at(tick));
   EXPECT_NEAR(static_cast<double>(messages.version(0)), 28, 2);  // every ninth tick
   EXPECT_EQ(messages.version(1), 0u);
   const std::uint64_t before = messages.version(0);
   HeadsetSample lost = sample_at(251);
   lost.sample.state = TrackState::lost;
   lost.sample.reason = Reason::too_old;
-  messages.add(lost);
+  add(messages, lost);
   EXPECT_EQ(messages.version(0), before + 1);
   const Json pen = message(messages, 0);
   EXPECT_EQ(pen["state"], "lost");
   EXPECT_EQ(pen["reason"], "too_old");
   EXPECT_TRUE(pen["tip_m"].is_null());
   EXPECT_TRUE(pen["ellipsoid"].is_null());
+}
+
+TEST(HeadsetMessages, RiseOnceForSamplesThatArriveTogether) {
+  HeadsetMessages messages({"pen"});
+  for (int tick = 1; tick <= 100; ++tick) messages.add(sample_at(tick));
+  EXPECT_EQ(messages.version(0), 0u);
+  messages.publish_due();
+  EXPECT_EQ(messages.version(0), 1u);
+  EXPECT_EQ(message(messages, 0)["tick"], 100);
 }
 
 TEST(HeadsetMessages, KeepTheNewestStrokesAndTheirShapeWithinTheCapacity) {
@@ -103,9 +117,9 @@ TEST(HeadsetMessages, KeepTheNewestStrokesAndTheirShapeWithinTheCapacity) {
       HeadsetSample given = sample_at(++tick);
       given.sample.buttons = 1;
       given.sample.pose.translation = {1.001e-3 * i, 0, 0};
-      messages.add(given);
+      add(messages, given);
     }
-    messages.add(sample_at(++tick));
+    add(messages, sample_at(++tick));
   };
   draw(101);
   Json stroke = message(messages, k_first_stroke);
@@ -130,7 +144,7 @@ TEST(HeadsetMessages, HoldThePointsOfMeasuredPosesAlone) {
     given.sample.buttons = 1;
     given.sample.pose.translation = {0.01 * tick, 0, 0};
     given.sample.state = tick < 10 ? TrackState::measured : TrackState::predicted;
-    messages.add(given);
+    add(messages, given);
   }
   EXPECT_EQ(message(messages, k_first_stroke)["points_m"].size(), 9u);
   EXPECT_EQ(message(messages, k_first_stroke)["age_ms"], 4.0 * (49 - 9) + 10);
