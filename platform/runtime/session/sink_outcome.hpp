@@ -15,6 +15,7 @@
 #include "platform/sinks/dds/dds_sink.hpp"
 #include "platform/sinks/dds/reader_result.hpp"
 #include "platform/sinks/headset/headset_output.hpp"
+#include "platform/sinks/record/derived_messages.hpp"
 #include "platform/sinks/record/message_observer.hpp"
 #include "platform/sinks/record/recording.hpp"
 
@@ -26,6 +27,7 @@ struct SinkOptions {
   std::vector<std::string> timing_faults;  // this machine's timing faults, stated in all outputs
   bool by_rate = true;                     // statistics by frame rate
   MessageObserver* observer = nullptr;     // of the recorded messages
+  DerivedMessages* derived = nullptr;      // further messages for viewers, from the recorded ones
   HeadsetOutput* headset = nullptr;        // display of a headset
   // Of run_session()'s source: for `by_rate`, and for the diagnostics.
   GroundTruthOfTool truth{};

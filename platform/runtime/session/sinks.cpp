@@ -88,6 +88,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     RecorderSettings settings;
     settings.when_full = can.when_full;
     settings.file.observer = options.observer;
+    settings.file.derived = options.derived;
     recorder_ = std::make_unique<Recorder>(recording_file_, info, settings);
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -36,6 +37,20 @@ std::uint8_t* copy_rows(const ImageView<Pixel>& image, const Roi& roi, std::uint
   for (int y = roi.y0; y < roi.y1; ++y, to += row_bytes)
     std::memcpy(to, image.row(y) + roi.x0, row_bytes);
   return to;
+}
+
+// Returns false if the size of the rows is not that of the rectangle.
+template <class Pixel>
+bool put_rows(std::span<const std::uint8_t> rows, const Roi& roi, int frame_width,
+              std::vector<Pixel>& frame) {
+  const auto row_bytes = static_cast<std::size_t>(roi.x1 - roi.x0) * sizeof(Pixel);
+  if (rows.size() != row_bytes * static_cast<std::size_t>(roi.y1 - roi.y0)) return false;
+  if (row_bytes == 0) return true;
+  const std::uint8_t* from = rows.data();
+  for (int y = roi.y0; y < roi.y1; ++y, from += row_bytes)
+    std::memcpy(frame.data() + static_cast<std::ptrdiff_t>(y) * frame_width + roi.x0, from,
+                row_bytes);
+  return true;
 }
 
 }  // namespace
@@ -93,6 +108,45 @@ void copy_pixels(const Frame& frame, const FrameLayout& layout,
     if (layout.reflectivity_bits == 16) to = copy_rows(frame.reflectivity_16, roi, to);
     if (layout.has_depth) to = copy_rows(frame.depth, roi, to);
   }
+}
+
+FrameBuffer empty_frame(const FrameLayout& layout) {
+  const auto pixels = static_cast<std::size_t>(layout.width) * layout.height;
+  FrameBuffer frame;
+  frame.width = layout.width;
+  frame.height = layout.height;
+  if (layout.reflectivity_bits == 8) frame.reflectivity_8.resize(pixels);
+  if (layout.reflectivity_bits == 16) frame.reflectivity_16.resize(pixels);
+  if (layout.has_depth) frame.depth.resize(pixels);
+  return frame;
+}
+
+bool put_rectangle(std::span<const std::uint8_t> reflectivity, std::span<const std::uint8_t> depth,
+                   const Roi& roi, const FrameLayout& layout, FrameBuffer& frame) {
+  if (roi.x1 > layout.width || roi.y1 > layout.height) return false;
+  const bool reflectivity_fits =
+      layout.reflectivity_bits == 8
+          ? put_rows(reflectivity, roi, layout.width, frame.reflectivity_8)
+      : layout.reflectivity_bits == 16
+          ? put_rows(reflectivity, roi, layout.width, frame.reflectivity_16)
+          : reflectivity.empty();
+  return reflectivity_fits &&
+         (layout.has_depth ? put_rows(depth, roi, layout.width, frame.depth) : depth.empty());
+}
+
+FrameBuffer frame_of(const FramePatch& patch) {
+  const FrameLayout& layout = patch.layout;
+  FrameBuffer frame = empty_frame(layout);
+  std::size_t at = 0;
+  for (int i = 0; i < layout.rectangle_count; ++i) {
+    const Roi& roi = layout.rectangles[static_cast<std::size_t>(i)];
+    const std::size_t reflectivity = reflectivity_bytes(layout, roi);
+    const std::size_t depth = depth_bytes(layout, roi);
+    (void)put_rectangle(patch.pixels.subspan(at, reflectivity),
+                        patch.pixels.subspan(at + reflectivity, depth), roi, layout, frame);
+    at += reflectivity + depth;
+  }
+  return frame;
 }
 
 }  // namespace glint

@@ -8,6 +8,7 @@
 #include "kernels/image/frame.hpp"
 #include "kernels/image/roi.hpp"
 #include "kernels/units.hpp"
+#include "platform/formats/frame_buffer.hpp"
 
 namespace glint {
 
@@ -51,5 +52,17 @@ struct FramePatch {
 // Cost: one copy of that many bytes; no allocation.
 void copy_pixels(const Frame& frame, const FrameLayout& layout,
                  std::span<std::uint8_t> pixels) noexcept;
+
+// A frame of the layout's size and planes; every pixel is 0.
+[[nodiscard]] FrameBuffer empty_frame(const FrameLayout& layout);
+
+// Copies a rectangle's rows into such a frame. Returns false if a plane's rows do not have the
+// rectangle's size or the rectangle is not inside the frame.
+[[nodiscard]] bool put_rectangle(std::span<const std::uint8_t> reflectivity,
+                                 std::span<const std::uint8_t> depth, const Roi& roi,
+                                 const FrameLayout& layout, FrameBuffer& frame);
+
+// The patch as a frame; pixels outside its rectangles are 0. Requires pixels of its layout.
+[[nodiscard]] FrameBuffer frame_of(const FramePatch& patch);
 
 }  // namespace glint

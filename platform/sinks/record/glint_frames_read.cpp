@@ -1,7 +1,5 @@
 #include <cstddef>
-#include <cstring>
 #include <span>
-#include <vector>
 
 #include "kernels/limits.hpp"
 #include "platform/sinks/record/glint_messages.hpp"
@@ -10,39 +8,8 @@
 namespace glint {
 namespace {
 
-// Copies one rectangle's rows into the frame; returns false if their size does not match it.
-template <class Pixel>
-bool put_rows(std::span<const std::uint8_t> rows, const Roi& roi, int frame_width,
-              std::vector<Pixel>& frame) {
-  const auto row_bytes = static_cast<std::size_t>(roi.x1 - roi.x0) * sizeof(Pixel);
-  if (rows.size() != row_bytes * static_cast<std::size_t>(roi.y1 - roi.y0)) return false;
-  if (row_bytes == 0) return true;
-  const std::uint8_t* from = rows.data();
-  for (int y = roi.y0; y < roi.y1; ++y, from += row_bytes)
-    std::memcpy(frame.data() + static_cast<std::ptrdiff_t>(y) * frame_width + roi.x0, from,
-                row_bytes);
-  return true;
-}
-
 // Largest camera image: bounds the memory that a short message can request.
 constexpr std::size_t k_pixels_max = std::size_t{k_width_max} * k_height_max;
-
-struct FrameShape {
-  int width = 0, height = 0, reflectivity_bits = 0;
-  bool has_depth = false;
-};
-
-bool put_rectangle(std::span<const std::uint8_t> reflectivity, std::span<const std::uint8_t> depth,
-                   const Roi& roi, const FrameShape& shape, FrameBuffer& frame) {
-  if (roi.x1 > shape.width || roi.y1 > shape.height) return false;
-  const bool reflectivity_fits =
-      shape.reflectivity_bits == 8 ? put_rows(reflectivity, roi, shape.width, frame.reflectivity_8)
-      : shape.reflectivity_bits == 16
-          ? put_rows(reflectivity, roi, shape.width, frame.reflectivity_16)
-          : reflectivity.empty();
-  return reflectivity_fits &&
-         (shape.has_depth ? put_rows(depth, roi, shape.width, frame.depth) : depth.empty());
-}
 
 }  // namespace
 
@@ -52,7 +19,7 @@ std::optional<FrameMessage> read_frame(MessageBytes bytes, const ImageRows& refl
   FrameMessage frame;
   skip_header(from);
   get_stamps(from, frame);
-  FrameShape shape;
+  FrameLayout shape;
   shape.width = from.get<std::uint16_t>();
   shape.height = from.get<std::uint16_t>();
   shape.reflectivity_bits = from.get<std::uint8_t>();
@@ -63,11 +30,7 @@ std::optional<FrameMessage> read_frame(MessageBytes bytes, const ImageRows& refl
   const auto pixels =
       static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height);
   if (pixels > k_pixels_max) return std::nullopt;
-  frame.pixels.width = shape.width;
-  frame.pixels.height = shape.height;
-  if (shape.reflectivity_bits == 8) frame.pixels.reflectivity_8.resize(pixels);
-  if (shape.reflectivity_bits == 16) frame.pixels.reflectivity_16.resize(pixels);
-  if (shape.has_depth) frame.pixels.depth.resize(pixels);
+  frame.pixels = empty_frame(shape);
   for (std::uint32_t i = 0; i < count; ++i) {
     Roi roi;
     roi.x0 = from.get<std::uint16_t>();

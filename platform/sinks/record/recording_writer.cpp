@@ -13,6 +13,9 @@
 namespace glint {
 namespace {
 
+// Numbers of channels that only the observer has; those of the file are smaller.
+constexpr std::uint16_t k_first_observed_channel = 0x8000;
+
 McapSettings mcap_settings(const RecordingSettings& settings) {
   McapSettings mcap;
   mcap.chunk_bytes = settings.chunk_bytes;
@@ -36,7 +39,7 @@ McapTexts opening_facts(const RecordingInfo& info) {
 
 }  // namespace
 
-struct RecordingWriter::Body {
+struct RecordingWriter::Body : DerivedOutput {
   struct ToolChannels {
     std::uint16_t pose = 0, pose_covariance = 0;
     std::string tip_frame;
@@ -52,14 +55,29 @@ struct RecordingWriter::Body {
     if (observer != nullptr) observer->add_channel(number, topic, type, schema);
     return number;
   }
-  // Writes the message in `cdr`, at that monotonic time.
-  void write(std::uint16_t to, Time time) {
+  std::uint16_t add_channel(std::string_view topic, std::string_view type,
+                            Destination to) override {
+    if (to == Destination::file_and_observer) return channel(topic, type);
+    const std::uint16_t number = next_observed_channel++;
+    if (observer != nullptr) observer->add_channel(number, topic, type, schema_text(type));
+    return number;
+  }
+  void write(std::uint16_t to, Time time, std::span<const std::uint8_t> message) override {
     const auto log_time =
         static_cast<std::uint64_t>(std::max<std::int64_t>(0, (time + unix_offset).nanoseconds));
-    mcap.write({to, static_cast<std::uint32_t>(sequence++), log_time, log_time}, cdr.bytes());
-    if (observer != nullptr) observer->add_message(to, log_time, cdr.bytes());
-    ++offered;
-    note_failure();
+    if (to < k_first_observed_channel) {
+      mcap.write({to, static_cast<std::uint32_t>(sequence++), log_time, log_time}, message);
+      ++offered;
+      note_failure();
+    }
+    if (observer != nullptr) observer->add_message(to, log_time, message);
+  }
+  // Writes the message in `cdr`, at that monotonic time.
+  void write(std::uint16_t to, Time time) { write(to, time, cdr.bytes()); }
+  // Makes the messages that are derived from this one.
+  template <class Message>
+  void derive(const Message& message) {
+    if (derived != nullptr) derived->add(message);
   }
   void note_failure() {
     if (!mcap.failed() || outcome.ended_early) return;
@@ -67,6 +85,7 @@ struct RecordingWriter::Body {
     outcome.reason = mcap.error();
   }
   void write_images(const FramePatch& patch);
+  void write_pose(const PoseSample& sample);
   const ToolChannels& tool(std::size_t number);
   RecordingOutcome close();
 
@@ -76,6 +95,8 @@ struct RecordingWriter::Body {
   std::vector<std::string> tool_names;
   McapWriter mcap;
   MessageObserver* observer;
+  DerivedMessages* derived;
+  std::uint16_t next_observed_channel = k_first_observed_channel;
   CdrWriter cdr;
   std::uint64_t sequence = 0;
   std::uint64_t offered = 0;  // messages, written or not
@@ -96,7 +117,8 @@ RecordingWriter::Body::Body(const std::string& file, const RecordingInfo& info,
       unix_offset(info.unix_offset),
       tool_names(info.tool_names),
       mcap(file, "ros2", "glint", mcap_settings(settings)),
-      observer(settings.observer) {
+      observer(settings.observer),
+      derived(settings.derived) {
   if (records_frames(level)) frame = channel(k_frame_topic, "glint_msgs/msg/FramePatch");
   if (level == RecordingLevel::full) {
     reflectivity = channel(k_reflectivity_topic, "sensor_msgs/msg/Image");
@@ -114,6 +136,7 @@ RecordingWriter::Body::Body(const std::string& file, const RecordingInfo& info,
   button = channel(k_button_topic, "glint_msgs/msg/Button");
   transform = channel(k_transform_topic, "tf2_msgs/msg/TFMessage");
   for (std::size_t i = 0; i < tool_names.size(); ++i) (void)tool(i);
+  if (derived != nullptr) derived->open(*this, unix_offset);
 
   mcap.add_metadata(k_opening_metadata, opening_facts(info));
   const auto start = static_cast<std::uint64_t>(std::max<std::int64_t>(0, unix_offset.nanoseconds));
@@ -147,6 +170,17 @@ void RecordingWriter::Body::write_images(const FramePatch& patch) {
                 patch.pixels.subspan(bright));
     write(depth, layout.arrival);
   }
+}
+
+void RecordingWriter::Body::write_pose(const PoseSample& sample) {
+  const Time stamp = sample.tick + unix_offset;
+  const ToolChannels& channels = tool(sample.tool);
+  write_pose_stamped(cdr, stamp, sample);
+  write(channels.pose, sample.tick);
+  write_pose_with_covariance(cdr, stamp, sample);
+  write(channels.pose_covariance, sample.tick);
+  write_transform(cdr, stamp, sample, channels.tip_frame);
+  write(transform, sample.tick);
 }
 
 RecordingOutcome RecordingWriter::Body::close() {
@@ -187,12 +221,14 @@ void RecordingWriter::write_frame(const FramePatch& patch) {
   write_message(body_->cdr, patch, as_images ? PixelStorage::in_images : PixelStorage::in_message,
                 body_->unix_offset);
   body_->write(body_->frame, layout.arrival);
+  body_->derive(patch);
 }
 
 void RecordingWriter::write_head_pose(const HeadPose& pose) {
   if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, pose, body_->unix_offset);
   body_->write(body_->head_pose, pose.time);
+  body_->derive(pose);
 }
 
 void RecordingWriter::write_markers(const MarkerFrame& frame) {
@@ -211,12 +247,14 @@ void RecordingWriter::write_dropped(const DroppedInput& input) {
   if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, input, body_->unix_offset);
   body_->write(body_->dropped, input.arrival);
+  body_->derive(input);
 }
 
 void RecordingWriter::write_robot_frame(const RobotFrameRecord& frame) {
   if (!records_inputs(body_->level)) return;
   write_message(body_->cdr, frame, body_->unix_offset);
   body_->write(body_->robot_frame, frame.time);
+  body_->derive(frame);
 }
 
 void RecordingWriter::write_pen_buttons(const PenButtonsRecord& buttons) {
@@ -228,6 +266,7 @@ void RecordingWriter::write_pen_buttons(const PenButtonsRecord& buttons) {
 void RecordingWriter::write_button(const ButtonEvent& event) {
   write_message(body_->cdr, event, body_->unix_offset);
   body_->write(body_->button, event.time);
+  body_->derive(event);
 }
 
 void RecordingWriter::write_output(const PoseSample& sample, std::span<const std::uint8_t> record) {
@@ -235,15 +274,8 @@ void RecordingWriter::write_output(const PoseSample& sample, std::span<const std
   body.output_hash.add(record);
   write_output_message(body.cdr, sample, record, body.unix_offset);
   body.write(body.output, sample.tick);
-  if (!sample.has_pose()) return;
-  const Time stamp = sample.tick + body.unix_offset;
-  const Body::ToolChannels& tool = body.tool(sample.tool);
-  write_pose_stamped(body.cdr, stamp, sample);
-  body.write(tool.pose, sample.tick);
-  write_pose_with_covariance(body.cdr, stamp, sample);
-  body.write(tool.pose_covariance, sample.tick);
-  write_transform(body.cdr, stamp, sample, tool.tip_frame);
-  body.write(body.transform, sample.tick);
+  if (sample.has_pose()) body.write_pose(sample);
+  body.derive(sample);
 }
 
 void RecordingWriter::count_dropped_offers(std::uint64_t count) { body_->outcome.dropped += count; }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "kernels/wire/pose_sample.hpp"
+#include "platform/sinks/record/derived_messages.hpp"
 #include "platform/sinks/record/frame_patch.hpp"
 #include "platform/sinks/record/message_observer.hpp"
 #include "platform/sinks/record/recording.hpp"
@@ -22,6 +23,7 @@ struct RecordingSettings {
   Duration chunk_span = milliseconds(1000);        // ... or this span: the loss in a crash
   Duration sync_period = milliseconds(1000);       // additional loss in a power failure
   MessageObserver* observer = nullptr;             // of every message; outlives the writer
+  DerivedMessages* derived = nullptr;              // further messages; outlives the writer
 };
 
 class RecordingWriter {
