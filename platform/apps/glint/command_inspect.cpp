@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/apps/glint/cell_option.hpp"
 #include "platform/apps/glint/commands.hpp"
@@ -25,6 +26,7 @@
 #include "platform/runtime/session/pipeline.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/tools/inspect/diagnosis.hpp"
+#include "platform/tools/inspect/explainer.hpp"
 #include "platform/tools/inspect/recorded_frames.hpp"
 #include "platform/tools/report/detection_image.hpp"
 
@@ -112,7 +114,57 @@ struct Inspected {
   FrameBuffer pixels;                   // of a frame file
   std::unique_ptr<FrameSource> source;  // of a recording; owns the frame's pixels
   std::string text, picture_name;
-  std::optional<CheckRow> at_that_time;  // whether there was a frame
+  std::optional<CheckRow> at_that_time;   // whether there was a frame
+  std::vector<Explanation> explanations;  // of a recording: by tool
+};
+
+// The explanations that a run of these frames records.
+class ExplainedFrames {
+ public:
+  explicit ExplainedFrames(const Cell& cell) : explainer_(cell), tools_(cell.tools.count) {
+    configure(cell, *output_);
+    output_->latest<RobotFrame>().set(declared_robot_frame(cell), 1, 0);
+  }
+
+  void add(const ArrivedFrame& arrived, const Estimates& estimates) {
+    const Frame& frame = arrived.frame;
+    explainer_.add_head(arrived.head);
+    if (explainer_.examines(frame.arrival)) {
+      const auto pixels = static_cast<std::size_t>(frame.width()) * frame.height();
+      (void)explainer_.add_frame(frame, pixels);
+    } else {
+      explainer_.add_arrival(frame.mid_exposure, frame.arrival);
+    }
+    if (!estimates.verdict.usable())
+      explainer_.add_refused(frame.arrival, estimates.verdict.reason);
+    output_->latest<Estimates>().set(estimates, ++versions_, 0);
+    tick(frame.arrival);
+  }
+
+  // By tool, at the tick of this time.
+  [[nodiscard]] std::vector<Explanation> at(Time time) {
+    tick(time);
+    std::vector<Explanation> all;
+    for (int t = 0; t < tools_; ++t) {
+      all.push_back(explainer_.explanation(static_cast<std::size_t>(t)));
+    }
+    return all;
+  }
+
+ private:
+  void tick(Time time) {
+    output_->input<Now>() = {time, ++ticks_, 0};
+    output_->activate();
+    const PoseSamples& samples = output_->output<PoseSamples>();
+    for (int t = 0; t < samples.count; ++t) {
+      explainer_.add_output(samples.items[static_cast<std::size_t>(t)]);
+    }
+  }
+
+  Explainer explainer_;
+  std::unique_ptr<Output> output_ = std::make_unique<Output>();
+  int tools_;
+  std::uint64_t versions_ = 0, ticks_ = 0;
 };
 
 void start_tracker(Inspected& inspected) {
@@ -161,6 +213,7 @@ Inspected inspected_recording(const InspectArguments& arguments) {
   start_tracker(inspected);
   Progress progress("tracking");
   inspected.source->start({});
+  ExplainedFrames explained(cell);
   ArrivedFrame current, next;
   std::size_t frames = 0;
   double after_s = 0;
@@ -175,6 +228,7 @@ Inspected inspected_recording(const InspectArguments& arguments) {
     inspected.tracker->input<Frame>() = current.frame;
     inspected.tracker->input<HeadPose>() = current.head;
     inspected.tracker->activate();
+    explained.add(current, inspected.tracker->output<Estimates>());
   }
   progress.clear();
   const auto seconds = [](Time time) {
@@ -190,6 +244,7 @@ Inspected inspected_recording(const InspectArguments& arguments) {
     throw InputError(arguments.recording + ": " + std::to_string(frames) +
                      " frames; expected --frame from 0 to " + std::to_string(frames - 1));
   }
+  inspected.explanations = explained.at(by_time ? at : current.frame.arrival);
   inspected.text =
       "frame " + std::to_string(frames - 1) + ", arrived at " + seconds(current.frame.arrival);
   inspected.picture_name = "frame_" + std::to_string(frames - 1);
@@ -263,9 +318,16 @@ int inspect(const InspectArguments& arguments) {
                        {"reason", std::string(name_of(track.reason))},
                        {"cause", diagnosis.cause},
                        {"checks", rows_json(diagnosis.rows)}});
+    if (!inspected.explanations.empty()) {
+      reasons.back()["state"] = inspected.explanations[i].state;
+      reasons.back()["explanation"] = inspected.explanations[i].text;
+    }
     lines.push_back(diagnosis.tool + ": " +
                     (diagnosis.cause.empty() ? "tracked" : "not tracked: " + diagnosis.cause));
     print_rows(diagnosis);
+    if (!inspected.explanations.empty()) {
+      std::printf("  %s\n", printable(inspected.explanations[i].text).c_str());
+    }
   }
 
   make_folder(arguments.out);

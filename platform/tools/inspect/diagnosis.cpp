@@ -84,34 +84,13 @@ CheckRow frame_row(const Tracker& tracker) {
   const FrameVerdict& verdict = tracker.output<Estimates>().verdict;
   if (verdict.usable()) return {"frame", true, "accepted", ""};
   return {"frame", false, "refused: " + std::string(name_of(verdict.reason)),
-          verdict.reason == Reason::frame_invalid
-              ? "set [camera] to the size and bits of the frames; record their depth"
-              : "set increasing stamps in the recording"};
+          next_step_of_refused_frame(verdict.reason)};
 }
 
 CheckRow head_row(Tracker& tracker) {
   if (tracker.input<HeadPose>().valid) return {"head pose", true, "valid", ""};
   return {"head pose", true, "none: poses in the camera's frame only",
           "record the head pose with the frames for poses in the world"};
-}
-
-const char* mismatch_text(Reason reason) {
-  switch (reason) {
-    case Reason::bad_fit:
-      return "three spots or more have the tool's distances, but not within the noise";
-    case Reason::imprecise:
-      return "the spots fit, but the pose is too imprecise: few or nearly collinear spots";
-    case Reason::ambiguous:
-      return "the spots fit in two ways: a symmetric, flat or far tool";
-    case Reason::markers_assigned_elsewhere:
-      return "the spots that fit belong to another tool";
-    case Reason::search_full:
-      return "too many spots for [budget] search_steps";
-    case Reason::blobs_full:
-      return "too many spots for [budget] blobs: not all were compared";
-    default:
-      return "no three spots match the distances of the tool's markers";
-  }
 }
 
 // Tries range, marker size and brightness, in this order: a lower threshold enlarges blobs and can
@@ -174,7 +153,7 @@ bool add_settings_rows(const Camera& camera, const Tool& tool, const ObservedBlo
        text("%d spots of a marker's size above %u counts", seen.blobs.count,
             unsigned{camera.threshold}),
        ""},
-      std::array{0.7, 0.5, 0.35, 0.25},
+      std::array{0.7, 0.5, 0.35, 0.25, 0.1, 0.04, 0.016},
       [&](Cell& changed, double part) {
         changed.camera.threshold = static_cast<std::uint16_t>(lowered(part));
       },
@@ -211,8 +190,10 @@ void add_causes(const Cell& cell, Tracker& tracker, const Tool& tool, Reason rea
   rows.push_back(spots);
   if (explained || !spots.passes) return;
 
-  CheckRow distances{"distances", false, mismatch_text(reason),
-                     "compare the tool's file with the tool: glint calibrate tool"};
+  CheckRow distances{
+      "distances", false, mismatch_text(reason),
+      "bring the tool into view; if it is, compare its file with it: glint calibrate "
+      "tool"};
   for (const char* other : {"pen", "board"}) {
     const std::optional<Tool> built_in = built_in_tool(other);
     if (!built_in || tool.name == built_in->name) continue;
@@ -239,30 +220,59 @@ std::string result_text(const Track& track) {
 
 }  // namespace
 
+const char* next_step_of_refused_frame(Reason reason) {
+  return reason == Reason::frame_invalid
+             ? "set [camera] to the size and bits of the frames; record their depth"
+             : "set increasing stamps at the source";
+}
+
+const char* mismatch_text(Reason reason) {
+  switch (reason) {
+    case Reason::bad_fit:
+      return "three spots or more have the tool's distances, but not within the noise";
+    case Reason::imprecise:
+      return "the spots fit, but the pose is too imprecise: few or nearly collinear spots";
+    case Reason::ambiguous:
+      return "the spots fit in two ways: a symmetric, flat or far tool";
+    case Reason::markers_assigned_elsewhere:
+      return "the spots that fit belong to another tool";
+    case Reason::search_full:
+      return "too many spots for [budget] search_steps";
+    case Reason::blobs_full:
+      return "too many spots for [budget] blobs: not all were compared";
+    default:
+      return "no three spots match the distances of the tool's markers";
+  }
+}
+
+ToolDiagnosis diagnose_tool(const Cell& cell, Tracker& tracker, std::size_t tool) {
+  const Track& track = tracker.output<Estimates>().tracks[tool];
+  ToolDiagnosis diagnosis;
+  diagnosis.tool = name_of_tool(cell, static_cast<int>(tool));
+  diagnosis.found = track.measured_now;
+  diagnosis.rows = {frame_row(tracker), head_row(tracker)};
+  const bool usable = diagnosis.rows[0].passes;
+  if (usable && !track.measured_now) {
+    add_causes(cell, tracker, cell.tools.items[tool], track.reason, diagnosis.rows);
+  }
+  diagnosis.rows.push_back({"pose", track.measured_now, result_text(track),
+                            track.measured_now ? "" : "see the first failed check above"});
+  for (const CheckRow& row : diagnosis.rows) {
+    if (!row.passes && diagnosis.cause.empty()) diagnosis.cause = row.check;
+  }
+  return diagnosis;
+}
+
 std::vector<ToolDiagnosis> diagnose(const Cell& cell, Tracker& tracker) {
   std::vector<ToolDiagnosis> all;
   for (int t = 0; t < cell.tools.count; ++t) {
-    const auto i = static_cast<std::size_t>(t);
-    const Track& track = tracker.output<Estimates>().tracks[i];
-    ToolDiagnosis diagnosis;
-    diagnosis.tool = name_of_tool(cell, t);
-    diagnosis.found = track.measured_now;
-    diagnosis.rows = {frame_row(tracker), head_row(tracker)};
-    const bool usable = diagnosis.rows[0].passes;
-    if (usable && !track.measured_now) {
-      add_causes(cell, tracker, cell.tools.items[i], track.reason, diagnosis.rows);
-    }
-    diagnosis.rows.push_back({"pose", track.measured_now, result_text(track),
-                              track.measured_now ? "" : "see the first failed check above"});
-    for (const CheckRow& row : diagnosis.rows) {
-      if (!row.passes && diagnosis.cause.empty()) diagnosis.cause = row.check;
-    }
-    all.push_back(std::move(diagnosis));
+    all.push_back(diagnose_tool(cell, tracker, static_cast<std::size_t>(t)));
   }
   return all;
 }
 
-std::vector<std::string> marker_names(const Cell& cell, Tracker& tracker) {
+std::vector<std::string> marker_names(const Cell& cell, Tracker& tracker,
+                                      const std::string& separator) {
   const Markers& markers = tracker.token<Markers>();
   const Assignment& assigned = tracker.token<Assignment>();
   std::vector<std::string> names(
@@ -280,7 +290,8 @@ std::vector<std::string> marker_names(const Cell& cell, Tracker& tracker) {
         continue;
       }
       const std::size_t blob = markers.items[static_cast<std::size_t>(marker)].blob;
-      if (blob < names.size()) names[blob] = name_of_tool(cell, t) + " " + std::to_string(m + 1);
+      if (blob < names.size())
+        names[blob] = name_of_tool(cell, t) + separator + std::to_string(m + 1);
     }
   }
   return names;

@@ -29,10 +29,19 @@ struct ToolDiagnosis {
 
 // Diagnoses each tool of the cell. Call after `tracker` was activated with the frame and the head
 // pose. Each tool that was not found takes at most k_trials full-frame searches.
-inline constexpr int k_trials = 16;  // 1 + 3 + 6 + 4 + 2
+inline constexpr int k_trials = 19;  // 1 + 3 + 6 + 7 + 2
 [[nodiscard]] std::vector<ToolDiagnosis> diagnose(const Cell& cell, Tracker& tracker);
 
-// Names of markers by blob, "pen 2"; empty for a blob of no tool.
-[[nodiscard]] std::vector<std::string> marker_names(const Cell& cell, Tracker& tracker);
+// Diagnoses one of the cell's tools.
+[[nodiscard]] ToolDiagnosis diagnose_tool(const Cell& cell, Tracker& tracker, std::size_t tool);
+
+// Names of markers by blob, "pen 2" with a space as separator; empty for a blob of no tool.
+[[nodiscard]] std::vector<std::string> marker_names(const Cell& cell, Tracker& tracker,
+                                                    const std::string& separator = " ");
+
+// What is wrong with a refused frame: the next step.
+[[nodiscard]] const char* next_step_of_refused_frame(Reason reason);
+// Why spots that are visible give no pose.
+[[nodiscard]] const char* mismatch_text(Reason reason);
 
 }  // namespace glint
