@@ -164,6 +164,7 @@ void read_sinks(TomlReader& root, Cell& cell) {
     cell.record.file = reader.text("file", cell.record.file);
     cell.record.level =
         reader.one_of("level", cell.record.level, {"full", "roi", "blobs", "outputs"});
+    cell.record.pictures = reader.boolean("pictures", cell.record.pictures);
     reader.done();
   }
 }

@@ -44,6 +44,7 @@ struct DdsCellSettings {
 struct RecordSettings {
   std::string file = "run.mcap";  // relative to --out; empty: no recording
   std::string level = "roi";      // full, roi, blobs, outputs
+  bool pictures = false;          // the live view's pictures, regions and scene as well
 };
 
 // Trajectories as text; paths relative to --out, empty: none.

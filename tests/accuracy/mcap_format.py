@@ -142,7 +142,9 @@ def write_bag(path, width, height, frames):
     return path
 
 
-class _Bytes:
+class Bytes:
+    """Reads a message field by field."""
+
     def __init__(self, data):
         self.data, self.at = data, 4
 
@@ -162,15 +164,42 @@ class _Bytes:
         return self.get("i") * 10**9 + self.get("I"), self.take()
 
 
+def messages_of(data):
+    """(topic, CDR) of each message of a file without compression, in its order."""
+    names = {}
+
+    def records(start, end):
+        at = start
+        while at + 9 <= end:
+            kind, length = struct.unpack_from("<BQ", data, at)
+            at += 9
+            if kind == 4:
+                number, size = struct.unpack_from("<H", data, at)[0], struct.unpack_from(
+                    "<I", data, at + 4)[0]
+                names[number] = data[at + 8:at + 8 + size].decode()
+            elif kind == 5:
+                number = struct.unpack_from("<H", data, at)[0]
+                yield names[number], data[at + 22:at + length]
+            elif kind == 6:
+                size = struct.unpack_from("<I", data, at + 28)[0]
+                assert size == 0, "compressed"
+                yield from records(at + 40, at + length)
+            elif kind == 15:
+                return
+            at += length
+
+    yield from records(8, len(data))
+
+
 def read_recording(path):
     """(width, height, frames) of a recording of Glint at level full."""
     data = path.read_bytes()
-    names, planes, frames, head = {}, {}, [], {}
+    planes, frames, head = {}, [], {}
     width = height = 0
 
     def message(topic, payload):
         nonlocal width, height
-        cdr = _Bytes(payload)
+        cdr = Bytes(payload)
         if topic in ("/glint/reflectivity", "/glint/depth"):
             cdr.header()
             height, width = cdr.get("I"), cdr.get("I")
@@ -187,25 +216,6 @@ def read_recording(path):
             frames.append(formats.Frame(stamp, planes["/glint/reflectivity"],
                                         planes["/glint/depth"], head.get(stamp), sequence, arrival))
 
-    def records(start, end):
-        at = start
-        while at + 9 <= end:
-            kind, length = struct.unpack_from("<BQ", data, at)
-            at += 9
-            if kind == 4:
-                number, size = struct.unpack_from("<H", data, at)[0], struct.unpack_from(
-                    "<I", data, at + 4)[0]
-                names[number] = data[at + 8:at + 8 + size].decode()
-            elif kind == 5:
-                number = struct.unpack_from("<H", data, at)[0]
-                message(names[number], data[at + 22:at + length])
-            elif kind == 6:
-                size = struct.unpack_from("<I", data, at + 28)[0]
-                assert size == 0, "compressed"
-                records(at + 40, at + length)
-            elif kind == 15:
-                return
-            at += length
-
-    records(8, len(data))
+    for topic, payload in messages_of(data):
+        message(topic, payload)
     return width, height, frames

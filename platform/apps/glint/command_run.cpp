@@ -36,6 +36,7 @@
 #include "platform/tools/inspect/recorded_frames.hpp"
 #include "platform/tools/programming/key_buttons.hpp"
 #include "platform/tools/programming/key_terminal.hpp"
+#include "platform/tools/viewer/viewer_messages.hpp"
 
 namespace glint {
 namespace {
@@ -127,6 +128,11 @@ nlohmann::ordered_json headset_json(const HeadsetCounts& counts) {
           {"queue_full", counts.queue_full}};
 }
 
+PicturesTo pictures_to(const Cell& cell, bool is_viewed) {
+  if (cell.record.pictures) return PicturesTo::file_and_observer;
+  return is_viewed ? PicturesTo::observer : PicturesTo::none;
+}
+
 nlohmann::ordered_json view_json(const FoxgloveCounts& counts) {
   return {{"clients", counts.clients},
           {"refused", counts.refused},
@@ -206,6 +212,8 @@ int run(const RunArguments& arguments) {
   options.observer = view.get();
   const std::unique_ptr<HeadsetServer> headset = open_headset(arguments, cell);
   options.headset = headset.get();
+  ViewerMessages viewer_messages(cell, pictures_to(cell, view != nullptr));
+  options.derived = &viewer_messages;
   Progress progress("tracking");
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };

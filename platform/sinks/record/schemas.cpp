@@ -39,6 +39,13 @@ constexpr std::array k_definitions{
     Definition{"sensor_msgs/Image",
                "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
                "uint8 is_bigendian\nuint32 step\nuint8[] data\n"},
+    Definition{"sensor_msgs/RegionOfInterest",
+               "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\n"
+               "bool do_rectify\n"},
+    Definition{"sensor_msgs/CameraInfo",
+               "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\n"
+               "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\nuint32 binning_x\n"
+               "uint32 binning_y\nsensor_msgs/RegionOfInterest roi\n"},
 };
 
 const Definition& definition(std::string_view name) {

@@ -20,6 +20,10 @@ inline constexpr std::string_view k_robot_frame_topic = "/glint/robot_frame";
 inline constexpr std::string_view k_pen_buttons_topic = "/glint/pen_buttons";
 inline constexpr std::string_view k_stroke_topic = "/glint/stroke";  // of `glint path`
 inline constexpr std::string_view k_transform_topic = "/tf";
+inline constexpr std::string_view k_explanation_topic = "/glint/explanation";
+inline constexpr std::string_view k_picture_topic = "/glint/picture";
+inline constexpr std::string_view k_camera_info_topic = "/glint/camera_info";
+inline constexpr std::string_view k_regions_topic = "/glint/regions";
 
 // Letters, digits and '_' of the name; "toolN" if the result is empty or the tool has no name.
 [[nodiscard]] std::string topic_name(const std::vector<std::string>& tool_names, std::size_t tool);
