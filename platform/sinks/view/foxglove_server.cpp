@@ -9,11 +9,15 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "platform/input_error.hpp"
+#include "platform/sinks/view/accepted_origin.hpp"
 #include "platform/sinks/view/free_port.hpp"
+#include "platform/sinks/view/page_reply.hpp"
 #include "platform/sinks/view/view_queue.hpp"
 
 namespace glint {
@@ -22,6 +26,7 @@ namespace {
 constexpr char k_protocol[] = "foxglove.websocket.v1";
 constexpr std::size_t k_fragment_bytes = std::size_t{32} << 10;
 constexpr std::size_t k_request_bytes_max = std::size_t{256} << 10;
+constexpr unsigned short k_headers_bytes_max = 4096;  // of a request, or it is refused
 constexpr auto k_drain_limit = std::chrono::milliseconds(500);
 
 // One connection.
@@ -30,20 +35,12 @@ struct Client : ViewClient {
   lws* connection = nullptr;
 };
 
-// A page in a browser states its origin; only pages of this machine and Foxglove's own may connect.
-bool is_accepted_origin(std::string_view origin) {
-  if (origin.empty()) return true;  // not a page
-  for (const std::string_view scheme : {"http://", "https://"}) {
-    if (origin.substr(0, scheme.size()) != scheme) continue;
-    const std::string_view host = origin.substr(scheme.size());
-    for (const std::string_view accepted :
-         {"localhost", "127.0.0.1", "[::1]", "app.foxglove.dev"}) {
-      if (host == accepted) return true;
-      if (host.substr(0, accepted.size()) == accepted && host[accepted.size()] == ':') return true;
-    }
-    return false;
-  }
-  return origin != "null";  // a program with a scheme of its own; no page of the web can state it
+// Nothing if it is too long; empty if it is absent.
+std::optional<std::string> header_of(lws* connection, lws_token_indexes token) {
+  std::array<char, 256> text{};
+  if (lws_hdr_total_length(connection, token) >= static_cast<int>(text.size())) return std::nullopt;
+  (void)lws_hdr_copy(connection, text.data(), static_cast<int>(text.size()), token);
+  return text.data();
 }
 
 }  // namespace
@@ -51,6 +48,8 @@ bool is_accepted_origin(std::string_view origin) {
 struct FoxgloveServer::Body {
   explicit Body(const FoxgloveSettings& wanted) : settings(wanted), queue(wanted.queue_bytes) {}
 
+  static int on_request(lws* connection, lws_callback_reasons reason, void* user, void* data,
+                        std::size_t size);
   static int on_event(lws* connection, lws_callback_reasons reason, void* user, void* data,
                       std::size_t size);
   int filter(lws* connection);
@@ -71,18 +70,41 @@ struct FoxgloveServer::Body {
 
   // Of the service thread alone.
   std::vector<Client*> clients;
+  static_assert(k_page_part_bytes_max <= k_fragment_bytes);
   std::array<std::uint8_t, LWS_PRE + k_fragment_bytes> fragment{};
 };
+
+// Events of connections that are no WebSocket, or none yet.
+int FoxgloveServer::Body::on_request(lws* connection, lws_callback_reasons reason, void* user,
+                                     void* data, std::size_t size) {
+  auto* const body = static_cast<Body*>(lws_context_user(lws_get_context(connection)));
+  auto* const reply = static_cast<PageReply*>(user);
+  switch (reason) {
+    case LWS_CALLBACK_HTTP: {
+      const unsigned status = page_status(connection, {static_cast<const char*>(data), size});
+      if (status == HTTP_STATUS_OK) return begin_page(connection, *reply);
+      body->queue.refuse();
+      return refuse_request(connection, status);
+    }
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+      return send_page_part(connection, *reply, std::span(body->fragment).subspan(LWS_PRE));
+    case LWS_CALLBACK_CLOSED_HTTP:
+      // Without a complete request, for example of an oversize one: the library closes on it.
+      if (reply == nullptr) body->queue.refuse();
+      return 0;
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:  // a WebSocket that names no protocol
+      body->queue.refuse();
+      return -1;
+    default:
+      return 0;
+  }
+}
 
 int FoxgloveServer::Body::on_event(lws* connection, lws_callback_reasons reason, void* user,
                                    void* data, std::size_t size) {
   auto* const body = static_cast<Body*>(lws_context_user(lws_get_context(connection)));
   auto** const slot = static_cast<Client**>(user);
   switch (reason) {
-    case LWS_CALLBACK_HTTP:
-      (void)lws_return_http_status(connection, HTTP_STATUS_BAD_REQUEST,
-                                   "A WebSocket of protocol foxglove.websocket.v1");
-      return -1;
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return body->filter(connection);
     case LWS_CALLBACK_ESTABLISHED:
@@ -105,12 +127,10 @@ int FoxgloveServer::Body::on_event(lws* connection, lws_callback_reasons reason,
 
 // Returns 0 to accept.
 int FoxgloveServer::Body::filter(lws* connection) {
-  std::array<char, 256> origin{};
-  const bool too_long =
-      lws_hdr_total_length(connection, WSI_TOKEN_ORIGIN) >= static_cast<int>(origin.size());
-  (void)lws_hdr_copy(connection, origin.data(), static_cast<int>(origin.size()), WSI_TOKEN_ORIGIN);
+  const std::optional<std::string> origin = header_of(connection, WSI_TOKEN_ORIGIN);
+  const std::optional<std::string> host = header_of(connection, WSI_TOKEN_HOST);
   const bool has_protocol = lws_hdr_total_length(connection, WSI_TOKEN_PROTOCOL) > 0;
-  if (has_protocol && !too_long && is_accepted_origin(origin.data()) &&
+  if (has_protocol && origin && host && is_accepted_origin(*origin, *host) &&
       clients.size() < static_cast<std::size_t>(settings.clients_max)) {
     return 0;
   }
@@ -202,7 +222,8 @@ void FoxgloveServer::Body::run() {
 FoxgloveServer::FoxgloveServer(const FoxgloveSettings& settings)
     : body_(std::make_unique<Body>(settings)) {
   lws_set_log_level(0, nullptr);
-  static const std::array<lws_protocols, 2> protocols = {
+  static const std::array<lws_protocols, 3> protocols = {
+      lws_protocols{"http", &Body::on_request, sizeof(PageReply), 0, 0, nullptr, 0},
       lws_protocols{k_protocol, &Body::on_event, sizeof(Client*), k_fragment_bytes, 0, nullptr, 0},
       lws_protocols{}};
   lws_context_creation_info info{};
@@ -212,6 +233,7 @@ FoxgloveServer::FoxgloveServer(const FoxgloveSettings& settings)
   info.gid = static_cast<gid_t>(-1);
   info.uid = static_cast<uid_t>(-1);
   info.user = body_.get();
+  info.max_http_header_data = k_headers_bytes_max;
   // Beside the clients: the listener, the wake-up pipe, and connections that are about to be
   // refused.
   info.fd_limit_per_thread = static_cast<unsigned>(settings.clients_max) + 16;

@@ -21,8 +21,10 @@
 namespace glint {
 
 struct FoxgloveCounts {
-  std::uint64_t clients = 0;   // accepted so far
-  std::uint64_t refused = 0;   // too many, another protocol, or a page of another origin
+  std::uint64_t clients = 0;  // accepted so far
+  // Too many, another protocol, a page of another origin; HTTP requests for anything but the page,
+  // and connections that end without a complete request.
+  std::uint64_t refused = 0;
   std::uint64_t invalid = 0;   // requests that are not of the protocol, and unknown channels
   std::uint64_t messages = 0;  // sent, over all clients
   std::uint64_t dropped = 0;   // left the queue before a client's turn; of any channel

@@ -1,0 +1,174 @@
+// The scene in space: headset, tools with their 95 % ellipsoids, strokes, robot, and the markers
+// of /glint/scene, each in its own frame.
+import { AxesHelper, Color, GridHelper, Group, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+import { Frames } from "./frames.js";
+import { MarkerObjects } from "./scene_markers.js";
+import { headsetObject, setEllipsoid, StrokeLines, toolObject } from "./scene_objects.js";
+import { Robot } from "./scene_robot.js";
+
+const NO_WEBGL = "This browser offers no WebGL: the scene in space is not drawn.";
+const DRAW = 1;  // glint_msgs/PenButtons
+
+export class SceneView {
+  #panel = document.querySelector("#scene");
+  #host = document.querySelector("#scene-frame");
+  #text = document.querySelector("#scene-text");
+  #canvas = document.querySelector("#scene-canvas");
+  #renderer = null;
+  #scene = new Scene();
+  #camera = new PerspectiveCamera(45, 1, 0.01, 50);
+  #controls = null;
+  #changed = true;
+
+  constructor() {
+    try {
+      this.#renderer = new WebGLRenderer({ canvas: this.#canvas, antialias: true });
+    } catch {
+      this.#host.querySelector(".empty").textContent = NO_WEBGL;
+    }
+    this.#scene.background = new Color("#12171d");
+    this.#scene.add(new HemisphereLight("#ffffff", "#667788", 2.5));
+    this.#camera.up.set(0, 0, 1);
+    this.#camera.position.set(-0.9, -1.1, 0.8);
+    this.#controls = new OrbitControls(this.#camera, this.#canvas);
+    this.#controls.addEventListener("change", () => (this.#changed = true));
+    this.#canvas.addEventListener("keydown", (event) => this.#key(event));
+    new ResizeObserver(() => (this.#changed = true)).observe(this.#host);
+    this.reset();
+  }
+
+  wants(topic, tools) {
+    return ["/tf", "/tf_static", "/glint/head_pose", "/glint/robot_frame", "/glint/pen_buttons", "/glint/output", "/glint/scene",
+      "/robot_description", "/joint_states"].includes(topic) || tools.poseTool(topic) >= 0;
+  }
+
+  reset() {
+    this.#root?.removeFromParent();
+    this.#root = new Group();
+    this.#scene.add(this.#root);
+    const grid = new GridHelper(2, 20, "#4a5664", "#2a323b").rotateX(Math.PI / 2);
+    this.#root.add(grid, new AxesHelper(0.1));
+    this.frames = new Frames(this.#root);
+    this.tools = new Map();
+    this.markers = new MarkerObjects(this.frames);
+    this.robot = new Robot(this.frames);
+    this.strokes = new StrokeLines(this.frames);
+    this.#headset = null;
+    this.#draws = this.#aimed = false;
+    this.#panel.classList.remove("has-data");
+    this.#text.textContent = "";
+    this.#changed = true;
+  }
+  #root = null;
+  #headset = null;
+  #draws = false;
+  #aimed = false;
+
+  show(topic, message, tools) {
+    this.#changed = true;
+    if (topic === "/glint/head_pose") this.#head(message);
+    else if (topic === "/glint/robot_frame") this.frames.set("hmd_world", "robot_base", message.in_reference ? null : message.pose);
+    else if (topic === "/tf" || topic === "/tf_static") this.#transforms(message);
+    else if (topic === "/glint/pen_buttons") this.#draws = (message.held & DRAW) !== 0;
+    else if (topic === "/glint/scene") this.markers.show(message);
+    else if (topic === "/robot_description") this.robot.describe(message.data);
+    else if (topic === "/joint_states") this.robot.setJoints(message);
+    else if (topic === "/glint/output") this.#output(message, tools);
+    else this.#pose(tools.nameOf(tools.poseTool(topic)), tools.poseTool(topic), message);
+  }
+
+  #head({ valid, pose }) {
+    if (!valid) return;
+    this.frames.set("hmd_world", "hmd_tof_optical", pose);
+    if (this.#headset !== null) return;
+    this.#headset = headsetObject();
+    this.frames.of("hmd_tof_optical").add(this.#headset);
+  }
+
+  // The tools' tips are drawn by their poses, the headset by its own.
+  #transforms({ transforms }) {
+    for (const { header, child_frame_id, transform } of transforms) {
+      if (/^glint_\w+_tip$/.test(child_frame_id) || child_frame_id === "hmd_tof_optical") continue;
+      this.frames.set(header.frame_id, child_frame_id, { position: transform.translation, orientation: transform.rotation });
+    }
+  }
+
+  #pose(name, number, { header, pose: { pose, covariance } }) {
+    let tool = this.tools.get(number);
+    if (tool === undefined) {
+      tool = toolObject();
+      this.tools.set(number, tool);
+    }
+    this.frames.of(header.frame_id).add(tool.group);
+    const { x, y, z } = pose.position, q = pose.orientation;
+    tool.group.position.set(x, y, z);
+    tool.pen.quaternion.set(q.x, q.y, q.z, q.w);
+    tool.group.visible = true;
+    tool.name = name;
+    tool.axes = setEllipsoid(tool.ellipsoid, covariance);
+    if (number === 0) this.strokes.add(header.frame_id, pose.position, this.#draws);
+    this.#panel.classList.add("has-data");
+    if (!this.#aimed) this.#aim(tool.group);
+  }
+
+  #output({ tool, state }) {
+    const HAS_POSE = [1, 2];
+    const entry = this.tools.get(tool);
+    if (entry !== undefined && !HAS_POSE.includes(state)) entry.group.visible = false;
+    if (!HAS_POSE.includes(state) && tool === 0) this.strokes.interrupt();
+  }
+
+  // The first pose is put into the middle.
+  #aim(object) {
+    this.#aimed = true;
+    this.#scene.updateMatrixWorld(true);
+    const target = object.getWorldPosition(new Vector3());
+    this.#controls.target.copy(target);
+    this.#camera.position.copy(target).add(new Vector3(-0.7, -0.9, 0.5));
+    this.#controls.update();
+  }
+
+  #key(event) {
+    const TURN = 0.12, ZOOM = 1.15;
+    const offset = this.#camera.position.clone().sub(this.#controls.target);
+    const side = new Vector3().crossVectors(offset, this.#camera.up).normalize();
+    if (event.key === "ArrowLeft") offset.applyAxisAngle(this.#camera.up, -TURN);
+    else if (event.key === "ArrowRight") offset.applyAxisAngle(this.#camera.up, TURN);
+    else if (event.key === "ArrowUp") offset.applyAxisAngle(side, TURN);
+    else if (event.key === "ArrowDown") offset.applyAxisAngle(side, -TURN);
+    else if (event.key === "+") offset.divideScalar(ZOOM);
+    else if (event.key === "-") offset.multiplyScalar(ZOOM);
+    else return;
+    event.preventDefault();
+    this.#camera.position.copy(this.#controls.target).add(offset);
+    this.#controls.update();
+  }
+
+  draw() {
+    if (!this.#changed || this.#renderer === null) return;
+    this.#changed = false;
+    this.strokes.draw();
+    const { clientWidth: width, clientHeight: height } = this.#host;
+    this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.#renderer.setSize(width, height, false);
+    this.#camera.aspect = width / height;
+    this.#camera.updateProjectionMatrix();
+    this.#renderer.render(this.#scene, this.#camera);
+    this.#describe();
+  }
+
+  #describe() {
+    const parts = ["Grid: 100 mm."];
+    for (const { group, name, axes } of this.tools.values()) {
+      if (!group.visible) continue;
+      const half = axes === null ? "no covariance"
+        : `95 % ellipsoid with half axes ${axes.map((axis) => (axis * 1e3).toFixed(1)).join(", ")} mm`;
+      parts.push(`${name}: tip at (${group.position.toArray().map((m) => (m * 1e3).toFixed(0)).join(", ")}) mm, ${half}.`);
+    }
+    if (this.robot.text !== "") parts.push(this.robot.text);
+    if (this.strokes.count > 0) parts.push(`${this.strokes.count} points of strokes.`);
+    this.#text.textContent = parts.join(" ");
+  }
+}
