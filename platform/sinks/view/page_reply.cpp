@@ -52,6 +52,11 @@ const std::uint8_t* bytes_at(const char* text) {
       return false;
     }
   }
+  if (status != HTTP_STATUS_OK &&
+      lws_add_http_header_by_name(connection, bytes_at("connection:"), bytes_at("close"), 5, &at,
+                                  end) != 0) {
+    return false;
+  }
   return lws_finalize_write_http_header(connection, begin, &at, end) == 0;
 }
 
@@ -77,7 +82,8 @@ int begin_page(lws* connection, PageReply& reply) {
 int refuse_request(lws* connection, unsigned status) {
   std::array<std::uint8_t, LWS_PRE + k_refusal.size()> room{};
   std::copy(k_refusal.begin(), k_refusal.end(), room.begin() + LWS_PRE);
-  if (send_headers(connection, status, "text/plain", k_refusal.size())) {
+  const bool is_head = lws_hdr_total_length(connection, WSI_TOKEN_HEAD_URI) > 0;  // has no body
+  if (send_headers(connection, status, "text/plain", k_refusal.size()) && !is_head) {
     (void)lws_write(connection, room.data() + LWS_PRE, k_refusal.size(), LWS_WRITE_HTTP_FINAL);
   }
   return -1;

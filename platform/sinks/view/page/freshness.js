@@ -1,8 +1,15 @@
-// Panels without new messages turn grey: within 0.5 s of the last one.
-const LIMIT_MS = 400;
-const CHECK_MS = 50;
+// Panels without new messages turn grey: within 0.5 s of the last one, with a margin for the check
+// itself. A camera sends at least 5 frames a second.
+export const LIMIT_MS = 350;
+export const CHECK_MS = 50;
 
-// A picture is absent longer than the outputs: a camera sends 5 a second when no hand is in view.
+// received: times of the newest message of each topic. A panel that never received any shows that
+// in its own words.
+export function isStale(now_ms, received) {
+  const newest = Math.max(...received.map((time) => time ?? -Infinity));
+  return newest > -Infinity && now_ms - newest > LIMIT_MS;
+}
+
 const PANELS = [
   { id: "sentences", topics: ["/glint/output"] },
   { id: "picture", topics: ["/glint/picture"] },
@@ -28,8 +35,8 @@ export class Freshness {
   #check() {
     const now = performance.now();
     for (const { id, topics } of PANELS) {
-      const newest = Math.max(...topics.map((topic) => this.#newest.get(topic) ?? -Infinity));
-      document.getElementById(id).classList.toggle("stale", this.#watches && now - newest > LIMIT_MS);
+      const stale = this.#watches && isStale(now, topics.map((topic) => this.#newest.get(topic)));
+      document.getElementById(id).classList.toggle("stale", stale);
     }
   }
 }

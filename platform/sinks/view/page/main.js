@@ -56,6 +56,8 @@ function openRun() {
   source = new LiveSource(`ws://${location.host}/`, {
     connected() {
       reset();  // another run may have started on this port
+      freshness.watch(true);
+      sentences.waitForFrames();
       status.textContent = `Live from ${location.host}`;
     },
     disconnected() { status.textContent = `No run at ${location.host}: connecting again each second`; },

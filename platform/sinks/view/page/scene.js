@@ -109,7 +109,6 @@ export class SceneView {
     tool.name = name;
     tool.axes = setEllipsoid(tool.ellipsoid, covariance);
     if (number === 0) this.strokes.add(header.frame_id, pose.position, this.#draws);
-    this.#panel.classList.add("has-data");
     if (!this.#aimed) this.#aim(tool.group);
   }
 
@@ -123,6 +122,7 @@ export class SceneView {
   // The first pose is put into the middle.
   #aim(object) {
     this.#aimed = true;
+    this.#panel.classList.add("has-data");
     this.#scene.updateMatrixWorld(true);
     const target = object.getWorldPosition(new Vector3());
     this.#controls.target.copy(target);

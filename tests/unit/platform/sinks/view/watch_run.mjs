@@ -1,7 +1,6 @@
 // Watches a live run with Foxglove's client, and compares what arrives with the run's recording.
 //   node watch_run.mjs GLINT OUT_FOLDER
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 
@@ -11,30 +10,12 @@ import foxglove from "@foxglove/ws-protocol";
 import { McapStreamReader } from "@mcap/core";
 import WebSocket from "ws";
 
+import { acceptable, runStarter } from "./start_run.mjs";
+
 const [glint, folder] = process.argv.slice(2);
 const { FoxgloveClient } = foxglove;
 const protocol = FoxgloveClient.SUPPORTED_SUBPROTOCOL;
-
-// Starts a run; `address` resolves once it listens.
-function startRun(port, name, ...options) {
-  const run = spawn(glint, ["run", "--no-dds", "--view", port, "--out", join(folder, name),
-    "--json", join(folder, `${name}.json`), ...options]);
-  let output = "";
-  const ended = new Promise((resolve) => run.on("exit", resolve));
-  const address = new Promise((resolve, reject) => {
-    run.stdout.on("data", (text) => {
-      output += text;
-      const found = output.match(/^view +(ws:\S+),/m);
-      if (found) resolve(found[1]);
-    });
-    ended.then((code) => reject(new Error(`glint ended with ${code}: ${output}`)));
-  });
-  run.stderr.on("data", (text) => (output += text));
-  return { ended, address, output: () => output };
-}
-
-// A machine that is busy renders too slowly for a live run; its view is the same.
-const acceptable = (code, output) => code === 0 || (code === 1 && /source too slow/.test(output));
+const startRun = runStarter(glint, folder);
 
 const viewFigures = (name) => JSON.parse(readFileSync(join(folder, `${name}.json`), "utf8")).view;
 
