@@ -9,6 +9,8 @@
 #include "platform/apps/glint/losses_json.hpp"
 #include "platform/apps/glint/output_file.hpp"
 #include "platform/apps/glint/progress.hpp"
+#include "platform/apps/glint/replay_view.hpp"
+#include "platform/apps/glint/view_option.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
@@ -23,6 +25,8 @@ struct ReplayArguments {
   std::string recording, points, tool, json;
   int workers = 1;
   ReadTolerance tolerance;
+  ViewArguments view;
+  double speed = 1;
 };
 
 int replay_recording(const ReplayArguments& arguments) {
@@ -68,6 +72,26 @@ int replay_recording(const ReplayArguments& arguments) {
                               {"recorded_sha256", result.recorded_sha256},
                               {"agrees", result.agrees()}});
   return result.agrees() && !lost ? 0 : 1;
+}
+
+int replay_to_view(const ReplayArguments& arguments) {
+  const ViewedRecording result = view_recording(arguments.recording, arguments.tolerance,
+                                                arguments.view.settings, arguments.speed);
+  std::printf("messages   %llu of %.1f s%s\n", static_cast<unsigned long long>(result.messages),
+              result.seconds, result.stopped ? ", stopped by a signal" : "");
+  if (result.skipped > 0) {
+    std::printf("skipped    %llu messages that are not CDR\n",
+                static_cast<unsigned long long>(result.skipped));
+  }
+  if (result.lost) std::printf("missing    messages of a damaged or truncated file\n");
+  print_view(result.view);
+  write_json(arguments.json, {{"messages", result.messages},
+                              {"skipped", result.skipped},
+                              {"seconds", result.seconds},
+                              {"stopped", result.stopped},
+                              {"missing", result.lost},
+                              {"view", view_json(result.view)}});
+  return result.lost || result.skipped > 0 ? 1 : 0;
 }
 
 int replay_marker_points(const ReplayArguments& arguments) {
@@ -123,6 +147,7 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  glint replay out/run.mcap --workers 2 --json replay.json\n"
+      "  glint replay out/run.mcap --view --speed 0.5\n"
       "  glint replay --points markers.csv --tool probe.toml --json poses.json\n"
       "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row. Frames less than 0.16 s apart "
       "are solved\n"
@@ -139,9 +164,23 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_flag("--allow-incomplete", arguments->tolerance.incomplete,
                     "read a recording with dropped messages or an early end");
   command->add_option("--json", arguments->json, "file of the figures");
+  auto* const view = add_view_option(*command, arguments->view);
+  view->excludes("--points")->excludes("--workers");
+  view->description(
+      "shows the recorded messages in real time instead of tracking: port of the live view's page "
+      "and WebSocket; default 8765");
+  command
+      ->add_option("--speed", arguments->speed, "of --view: 2 shows a recording in half its time")
+      ->needs(view)
+      ->check(in_range(0.01, 100.0))
+      ->capture_default_str();
   command->callback([arguments, &exit_code] {
     if (arguments->recording.empty() == arguments->points.empty()) {
       throw InputError("replay: expected either a recording or --points FILE");
+    }
+    if (arguments->view.wanted) {
+      exit_code = replay_to_view(*arguments);
+      return;
     }
     exit_code =
         arguments->points.empty() ? replay_recording(*arguments) : replay_marker_points(*arguments);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "platform/apps/glint/cell_option.hpp"
+#include "platform/apps/glint/headset_option.hpp"
 #include "platform/apps/glint/lab_program.hpp"
 #include "platform/apps/glint/output_file.hpp"
 #include "platform/apps/glint/planned_run.hpp"
@@ -22,13 +23,13 @@
 #include "platform/apps/glint/run_commands.hpp"
 #include "platform/apps/glint/run_output.hpp"
 #include "platform/apps/glint/run_report.hpp"
+#include "platform/apps/glint/view_option.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/folder_lock.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/runtime/session/node_probe.hpp"
 #include "platform/runtime/session/simulated_run.hpp"
-#include "platform/sinks/headset/headset_server.hpp"
 #include "platform/sinks/view/foxglove_server.hpp"
 #include "platform/sources/open_live_source.hpp"
 #include "platform/sources/open_source.hpp"
@@ -52,10 +53,8 @@ struct RunArguments {
   std::vector<std::string> inject;
   bool trace = false;
   bool keys = false;
-  bool views = false;
-  FoxgloveSettings view;
-  bool shows_on_headset = false;
-  HeadsetSettings headset;
+  ViewArguments view;
+  HeadsetArguments headset;
   double source_frame_ms = 0;
   bool recorded = false;  // glint track
   std::string source, kind;
@@ -93,52 +92,18 @@ void open_key_terminal(const RunArguments& arguments, const Cell& cell,
 
 // The live view of a run's recorded messages; null without --view.
 std::unique_ptr<FoxgloveServer> open_view(const RunArguments& arguments, const Cell& cell) {
-  if (!arguments.views) return nullptr;
+  if (!arguments.view.wanted) return nullptr;
   if (cell.record.file.empty()) {
     throw InputError(cell.file +
                      ": --view shows the messages of the run's recording; expected "
                      "record.file");
   }
-  auto server = std::make_unique<FoxgloveServer>(arguments.view);
-  std::printf("view       ws://%s:%d, protocol foxglove.websocket.v1\n",
-              arguments.view.address.c_str(), server->port());
-  std::fflush(stdout);
-  return server;
-}
-
-// The return path to a headset's display; null without --headset.
-std::unique_ptr<HeadsetServer> open_headset(const RunArguments& arguments, const Cell& cell) {
-  if (!arguments.shows_on_headset) return nullptr;
-  HeadsetSettings settings = arguments.headset;
-  for (int t = 0; t < cell.tools.count; ++t) {
-    settings.tool_names.emplace_back(cell.tools.items[static_cast<std::size_t>(t)].name.data());
-  }
-  auto server = std::make_unique<HeadsetServer>(settings);
-  std::printf("headset    ws://%s:%d, protocol glint.headset.v1\n", settings.address.c_str(),
-              server->port());
-  std::fflush(stdout);
-  return server;
-}
-
-nlohmann::ordered_json headset_json(const HeadsetCounts& counts) {
-  return {{"clients", counts.clients},
-          {"refused", counts.refused},
-          {"messages", counts.messages},
-          {"not_taken", counts.not_taken},
-          {"queue_full", counts.queue_full}};
+  return start_view(arguments.view.settings);
 }
 
 PicturesTo pictures_to(const Cell& cell, bool is_viewed) {
   if (cell.record.pictures) return PicturesTo::file_and_observer;
   return is_viewed ? PicturesTo::observer : PicturesTo::none;
-}
-
-nlohmann::ordered_json view_json(const FoxgloveCounts& counts) {
-  return {{"clients", counts.clients},
-          {"refused", counts.refused},
-          {"invalid", counts.invalid},
-          {"messages", counts.messages},
-          {"dropped", counts.dropped}};
 }
 
 // A write that fails, as on a full disk, loses only its own file.
@@ -163,19 +128,8 @@ int report(const Cell& cell, const SessionOptions& options, const std::string& j
   };
   (void)written(write_summary, result);
   print_table(summary_of(cell, options.plan, result), result);
-  if (view != nullptr) {
-    const FoxgloveCounts counts = view->counts();
-    std::printf("view       %llu clients, %llu messages sent, %llu dropped\n",
-                static_cast<unsigned long long>(counts.clients),
-                static_cast<unsigned long long>(counts.messages),
-                static_cast<unsigned long long>(counts.dropped));
-  }
-  if (result.headset) {
-    std::printf("headset    %llu clients, %llu messages sent, %llu not taken\n",
-                static_cast<unsigned long long>(result.headset->clients),
-                static_cast<unsigned long long>(result.headset->messages),
-                static_cast<unsigned long long>(result.headset->not_taken));
-  }
+  if (view != nullptr) print_view(view->counts());
+  if (result.headset) print_headset(*result.headset);
   const std::size_t printed = result.files.size();
   const bool plotted = written([&] { draw_plots(options.out, result); }, result);
   print_files(result, printed);
@@ -210,7 +164,7 @@ int run(const RunArguments& arguments) {
   const FolderLock lock(arguments.out);
   const std::unique_ptr<FoxgloveServer> view = open_view(arguments, cell);
   options.observer = view.get();
-  const std::unique_ptr<HeadsetServer> headset = open_headset(arguments, cell);
+  const std::unique_ptr<HeadsetServer> headset = open_headset(arguments.headset, cell);
   options.headset = headset.get();
   ViewerMessages viewer_messages(cell, pictures_to(cell, view != nullptr));
   options.derived = &viewer_messages;
@@ -248,26 +202,8 @@ void add_common(CLI::App& command, RunArguments& arguments) {
   command.add_option("--record-level", arguments.level, "full, roi, blobs or outputs");
   command.add_option("--workers", arguments.workers, "threads of the frame group: 1 or 2")
       ->check(in_range(1, 2));
-  auto* const view = command.add_option("--view", arguments.view.port,
-                                        "live view for Foxglove: WebSocket port, default 8765");
-  view->expected(0, 1)->check(in_range(0, 65535));
-  command
-      .add_option("--view-address", arguments.view.address,
-                  "address that the view listens on; default: this machine only")
-      ->needs(view);
-  auto* const headset =
-      command.add_option("--headset", arguments.headset.port,
-                         "pen, strokes and robot for a headset's display: WebSocket port, default "
-                         "8766");
-  headset->expected(0, 1)->check(in_range(0, 65535));
-  command
-      .add_option("--headset-address", arguments.headset.address,
-                  "address that it listens on; default: this machine only")
-      ->needs(headset);
-  command.parse_complete_callback([&arguments, view, headset] {
-    arguments.views = view->count() > 0;
-    arguments.shows_on_headset = headset->count() > 0;
-  });
+  add_view_option(command, arguments.view);
+  add_headset_option(command, arguments.headset);
   command
       .add_option("--method", arguments.method, "glint or baseline (Puljiz et al.; formerly seed)")
       ->check(CLI::IsMember({"glint", "baseline", "seed"}));

@@ -42,7 +42,7 @@ struct Request {
 [[nodiscard]] std::vector<std::uint8_t> message_head(std::uint32_t subscription,
                                                      std::uint64_t unix_ns);
 
-[[nodiscard]] inline std::vector<std::uint8_t> bytes_of(std::string_view text) {
+[[nodiscard]] inline std::vector<std::uint8_t> text_bytes(std::string_view text) {
   return {text.begin(), text.end()};
 }
 

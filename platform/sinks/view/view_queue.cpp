@@ -40,7 +40,7 @@ bool ViewQueue::add_message(std::uint16_t channel, std::uint64_t unix_ns,
 }
 
 void ViewQueue::enter(ViewClient& client) {
-  client.waiting.push_back({bytes_of(server_info()), nullptr, 0});
+  client.waiting.push_back({text_bytes(server_info()), nullptr, 0});
   const std::lock_guard lock(mutex_);
   ++counts_.clients;
   client.next = next_number_;
@@ -61,7 +61,7 @@ void ViewQueue::refuse() {
 // Requires the lock.
 void ViewQueue::reject(ViewClient& client, const std::string& why) {
   ++counts_.invalid;
-  client.waiting.push_back({bytes_of(error_status(why)), nullptr, 0});
+  client.waiting.push_back({text_bytes(error_status(why)), nullptr, 0});
 }
 
 // Requires the lock.
@@ -113,7 +113,7 @@ void ViewQueue::enqueue_next(ViewClient& client) {
     for (; client.advertised < channels_.size(); ++client.advertised) {
       added.push_back(channels_[client.advertised].advertisement);
     }
-    client.waiting.push_back({bytes_of(advertise(added)), nullptr, 0});
+    client.waiting.push_back({text_bytes(advertise(added)), nullptr, 0});
     return;
   }
   const std::uint64_t first = skip_dropped(client);

@@ -11,17 +11,18 @@ import { build } from "esbuild";
 const [sources, work] = process.argv.slice(2);
 const PART_BYTES_MAX = 16 << 10;
 
-const bundled = (file) => build({
-  entryPoints: [join(sources, file)],
-  bundle: true,
-  minify: true,
-  charset: "ascii",
-  legalComments: "inline",
-  target: "es2022",
-  nodePaths: [join(work, "node_modules")],
-  write: false,
-  logLevel: "error",
-}).then((result) => result.outputFiles[0].text);
+const bundled = (file) =>
+  build({
+    entryPoints: [join(sources, file)],
+    bundle: true,
+    minify: true,
+    charset: "ascii",
+    legalComments: "inline",
+    target: "es2022",
+    nodePaths: [join(work, "node_modules")],
+    write: false,
+    logLevel: "error",
+  }).then((result) => result.outputFiles[0].text);
 
 const script = (await bundled("main.js")).replaceAll("</script", "<\\/script");
 const style = await bundled("style.css");
@@ -32,9 +33,16 @@ const page = frame
 
 // The script is admitted by its sum; 'self' is the WebSocket of the server that sent the page.
 const sum = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
-const policy = ["default-src 'none'", `script-src ${sum(script)}`, `style-src ${sum(style)}`,
-  "connect-src 'self'", "img-src data:", "base-uri 'none'", "form-action 'none'",
-  "frame-ancestors 'none'"].join("; ");
+const policy = [
+  "default-src 'none'",
+  `script-src ${sum(script)}`,
+  `style-src ${sum(style)}`,
+  "connect-src 'self'",
+  "img-src data:",
+  "base-uri 'none'",
+  "form-action 'none'",
+  "frame-ancestors 'none'",
+].join("; ");
 
 const bytes = Buffer.from(page);
 const parts = [];
@@ -51,9 +59,12 @@ function escaped(character) {
 }
 
 writeFileSync(join(work, "page.html"), page);
-writeFileSync(join(work, "view_page.inc"), `constexpr const char* k_page_type = "text/html; charset=utf-8";
+writeFileSync(
+  join(work, "view_page.inc"),
+  `constexpr const char* k_page_type = "text/html; charset=utf-8";
 constexpr std::string_view k_page_policy = ${quoted(policy)};
 constexpr std::string_view k_page_parts[] = {
 ${parts.map((part) => `    ${quoted(part)},`).join("\n")}
 };
-`);
+`,
+);

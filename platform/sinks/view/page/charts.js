@@ -1,24 +1,42 @@
 // Strip charts of the outputs: state, age, standard deviation, latency, frame rate; and the losses.
-import uPlot from "uplot";
-
 import { secondsOf } from "./decoding.js";
 import { Latency, STAGES } from "./latency.js";
 import { binOf, binTimes, BIN_S, Series } from "./series.js";
-import { plain, reasonName, stateText, STATES } from "./words.js";
+import { HEIGHT_PX, stripPlot } from "./strip_plot.js";
+import { plain, reasonName, stateText } from "./words.js";
 
 const TOOL_COLOURS = ["#1f5fbf", "#a56400", "#7b3fb5", "#1a7f4b", "#b3261e", "#5a6673"];
 const STAGE_COLOURS = ["#5a7ea8", "#1f5fbf"];
-const HEIGHT_PX = 150;
 const TOOLS_MAX = 16;
-// The state's height in its chart, by its value in glint_msgs/Output: none, predicted, measured, lost.
+// The state's height in its chart, by its value in glint_msgs/Output.
 const STATE_HEIGHTS = [0, 2, 3, 1];
 const STATE_AT_HEIGHT = ["none", "lost", "predicted", "measured"];
 
 const STRIPS = [
-  { title: "State", unit: "", reduction: "newest", value: (output) => STATE_HEIGHTS[output.state] ?? null, range: [0, 3] },
-  { title: "Age of the measurement", unit: "ms", reduction: "largest", value: (output) => hasPose(output) ? output.age_s * 1e3 : null },
-  { title: "Standard deviation of the position", unit: "mm", reduction: "largest", value: (output) => hasPose(output) ? output.sigma_position_m * 1e3 : null },
-  { title: "Standard deviation of the rotation", unit: "deg", reduction: "largest", value: (output) => hasPose(output) ? (output.sigma_orientation_rad * 180) / Math.PI : null },
+  {
+    title: "State",
+    names: STATE_AT_HEIGHT.map(stateText),
+    reduction: "newest",
+    value: (output) => STATE_HEIGHTS[output.state] ?? null,
+  },
+  {
+    title: "Age of the measurement",
+    unit: "ms",
+    reduction: "largest",
+    value: (output) => (hasPose(output) ? output.age_s * 1e3 : null),
+  },
+  {
+    title: "Standard deviation of the position",
+    unit: "mm",
+    reduction: "largest",
+    value: (output) => (hasPose(output) ? output.sigma_position_m * 1e3 : null),
+  },
+  {
+    title: "Standard deviation of the rotation",
+    unit: "deg",
+    reduction: "largest",
+    value: (output) => (hasPose(output) ? (output.sigma_orientation_rad * 180) / Math.PI : null),
+  },
 ];
 const hasPose = ({ state }) => state === 1 || state === 2;
 
@@ -36,7 +54,7 @@ export class Charts {
   }
 
   reset() {
-    this.tools = [];  // by number: { name, series of each strip }
+    this.tools = []; // by number: { name, series of each strip }
     this.latency = new Latency();
     this.stages = STAGES.map(() => new Series("largest"));
     this.frames = new Series("count");
@@ -54,14 +72,18 @@ export class Charts {
   show(topic, message, tools) {
     const time_s = secondsOf(message.header.stamp);
     if (topic === "/glint/output") return this.#output(time_s, message, tools);
-    if (topic === "/glint/dropped") return this.#count(`frames dropped, ${plain(reasonName(message.reason))}`);
-    if (topic === "/glint/choice") return message.overrun === 0 ? undefined : this.#count("overruns");
+    if (topic === "/glint/dropped")
+      return this.#count(`frames dropped, ${plain(reasonName(message.reason))}`);
+    if (topic === "/glint/choice")
+      return message.overrun === 0 ? undefined : this.#count("overruns");
     this.frames.add(time_s, 1);
     this.newest_s = Math.max(this.newest_s, time_s);
     this.latency.addFrame(message);
   }
 
-  #count(name, by = 1) { this.counts[name] = (this.counts[name] ?? 0) + by; }
+  #count(name, by = 1) {
+    this.counts[name] = (this.counts[name] ?? 0) + by;
+  }
 
   #output(time_s, output, tools) {
     if (output.tool >= TOOLS_MAX) return;
@@ -71,7 +93,8 @@ export class Charts {
     this.newest_s = Math.max(this.newest_s, time_s);
     STRIPS.forEach(({ value }, i) => entry.series[i].add(time_s, value(output)));
     const last = this.lastTick.get(output.tool);
-    if (last !== undefined && output.tick_number > last + 1) this.#count("ticks absent", output.tick_number - last - 1);
+    if (last !== undefined && output.tick_number > last + 1)
+      this.#count("ticks absent", output.tick_number - last - 1);
     this.lastTick.set(output.tool, output.tick_number);
     const stages = output.tool === 0 ? this.latency.addOutput(time_s, output) : null;
     stages?.forEach((ms, i) => this.stages[i].add(time_s, ms));
@@ -81,7 +104,7 @@ export class Charts {
     for (let i = this.tools.length; i <= number; ++i) {
       this.tools.push({ name: "", series: STRIPS.map(({ reduction }) => new Series(reduction)) });
     }
-    for (const plot of this.plots) plot.destroy();  // their number of series changes
+    for (const plot of this.plots) plot.destroy(); // their number of series changes
     this.plots = [];
   }
 
@@ -91,7 +114,10 @@ export class Charts {
     // The newest bin is not complete yet.
     const last = binOf(this.newest_s) - 1;
     STRIPS.forEach((_, i) => {
-      this.plots[i].setData([this.#times, ...this.tools.map(({ series }) => series[i].values(last))]);
+      this.plots[i].setData([
+        this.#times,
+        ...this.tools.map(({ series }) => series[i].values(last)),
+      ]);
     });
     const [transport, rest] = this.stages.map((stage) => stage.values(last));
     const total = transport.map((ms, i) => (ms === null ? null : ms + rest[i]));
@@ -99,58 +125,54 @@ export class Charts {
     this.plots[STRIPS.length + 1].setData([this.#times, rate(this.frames.values(last))]);
     this.#drawLatency();
     this.#losses.textContent = `Losses seen in these messages: ${Object.entries(this.counts)
-      .map(([name, count]) => `${name} ${count}`).join(", ")}.`;
+      .map(([name, count]) => `${name} ${count}`)
+      .join(", ")}.`;
   }
 
   #drawLatency() {
     const medians = this.latency.medians();
     if (medians === null) return;
     const texts = medians.map((ms, i) => `${STAGES[i]} ${ms.toFixed(1)} ms`);
-    this.#bar.replaceChildren(...medians.map((ms, i) => {
-      const part = document.createElement("div");
-      part.style.flexGrow = String(Math.max(0, ms));
-      part.style.background = STAGE_COLOURS[i];
-      part.textContent = part.title = texts[i];
-      return part;
-    }));
+    this.#bar.replaceChildren(
+      ...medians.map((ms, i) => {
+        const part = document.createElement("div");
+        part.style.flexGrow = String(Math.max(0, ms));
+        part.style.background = STAGE_COLOURS[i];
+        part.textContent = part.title = texts[i];
+        return part;
+      }),
+    );
     const sum = medians.reduce((a, b) => a + b, 0);
     this.#bar.setAttribute("aria-label", `${texts.join(", ")}; sum ${sum.toFixed(1)} ms`);
-    this.#text.textContent = `Mid-exposure to the tick that carries the frame first: ${sum.toFixed(1)} ms ` +
+    this.#text.textContent =
+      `Mid-exposure to the tick that carries the frame first: ${sum.toFixed(1)} ms ` +
       `(${texts.join(", ")}). Sending, the time on the bus and the bus load are not in these messages: the run's table states them.`;
   }
 
   #build() {
-    const toolSeries = this.tools.map(({ name }, i) => ({ label: name || `tool ${i}`, stroke: TOOL_COLOURS[i % TOOL_COLOURS.length], width: 1.5 }));
+    const toolSeries = this.tools.map(({ name }, i) => ({
+      label: name || `tool ${i}`,
+      stroke: TOOL_COLOURS[i % TOOL_COLOURS.length],
+      width: 1.5,
+    }));
     this.#host.replaceChildren();
     for (const strip of STRIPS) this.#plot(strip, toolSeries);
     // The sum is drawn first: what remains visible of it is the upper stage.
     this.#plot({ title: "Latency of frames", unit: "ms" }, [
-      { label: `with ${STAGES[1]}`, stroke: STAGE_COLOURS[1], fill: STAGE_COLOURS[1] },
-      { label: STAGES[0], stroke: STAGE_COLOURS[0], fill: STAGE_COLOURS[0] }]);
-    this.#plot({ title: "Frame rate", unit: "Hz" }, [{ label: "frames", stroke: TOOL_COLOURS[0], width: 1.5 }]);
+      { label: "sum", stroke: STAGE_COLOURS[1], fill: STAGE_COLOURS[1] },
+      { label: STAGES[0], stroke: STAGE_COLOURS[0], fill: STAGE_COLOURS[0] },
+    ]);
+    this.#plot({ title: "Frame rate", unit: "Hz" }, [
+      { label: "frames", stroke: TOOL_COLOURS[0], width: 1.5 },
+    ]);
     this.#fit();
   }
 
-  #plot({ title, unit, range }, series) {
-    const isState = range !== undefined;
-    const text = (value) => isState ? stateText(STATE_AT_HEIGHT[value]) : `${value.toFixed(1)} ${unit}`;
+  #plot(strip, series) {
     const host = document.createElement("div");
     host.className = "strip";
-    const heading = document.createElement("h3");
-    host.append(heading);
     this.#host.append(host);
-    const showValues = (plot) => { heading.textContent = valuesText(plot, title, text); };
-    this.plots.push(new uPlot({
-      width: 300, height: HEIGHT_PX,
-      legend: { show: false },
-      cursor: { drag: { x: false, y: false }, sync: { key: "strips" } },
-      hooks: { setCursor: [showValues], setData: [showValues] },
-      scales: { x: { time: false }, y: { range: range ?? ((_, low, high) => [0, Math.max(high * 1.1, 1e-3)]) } },
-      series: [{}, ...series.map((one) => ({ ...one, points: { show: false }, spanGaps: false }))],
-      axes: [{ size: 26, values: (_, ticks) => ticks.map((tick) => `${tick} s`) },
-        { size: isState ? 96 : 64, splits: isState ? () => [0, 1, 2, 3] : undefined,
-          values: (_, ticks) => ticks.map((tick) => (isState ? stateText(STATE_AT_HEIGHT[tick]) : `${tick} ${unit}`)) }],
-    }, [this.#times, ...series.map(() => [])], host));
+    this.plots.push(stripPlot(host, strip, series, this.#times));
   }
 
   #fit() {
@@ -161,24 +183,12 @@ export class Charts {
   }
 }
 
-// The values under the pointer, or the newest ones.
-function valuesText(plot, title, text) {
-  const at = plot.cursor.idx ?? plot.data[0].length - 1;
-  const when = plot.cursor.idx === null || plot.cursor.idx === undefined ? "" : ` at ${plot.data[0][at].toFixed(1)} s`;
-  const parts = plot.series.slice(1).map(({ label }, i) => {
-    const value = plot.data[i + 1][at] ?? null;
-    const name = plot.series.length > 2 ? `${label} ` : "";
-    return value === null ? `${name}none` : name + text(value);
-  });
-  return `${title}${when}: ${parts.join(", ")}`;
-}
-
 // Frames in each second, from the counts of the bins: a bin is too short for a rate.
 function rate(counts) {
   const bins = Math.round(1 / BIN_S);
   let sum = 0;
   return counts.map((count, i) => {
-    sum += (count ?? 0) - (i >= bins ? counts[i - bins] ?? 0 : 0);
+    sum += (count ?? 0) - (i >= bins ? (counts[i - bins] ?? 0) : 0);
     return i >= bins - 1 && sum > 0 ? sum : null;
   });
 }

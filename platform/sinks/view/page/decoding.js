@@ -36,7 +36,11 @@ export const secondsOf = ({ sec, nanosec }) => sec + nanosec * 1e-9;
 // Gray values of a picture, one number a pixel; null for an encoding that the page does not read.
 export function pixelsOf({ width, height, encoding, is_bigendian, step, data }) {
   const bytes = { mono8: 1, "8UC1": 1, mono16: 2, "16UC1": 2 }[encoding];
-  if (bytes === undefined || step < width * bytes || data.length < step * (height - 1) + width * bytes) {
+  if (
+    bytes === undefined ||
+    step < width * bytes ||
+    data.length < step * (height - 1) + width * bytes
+  ) {
     return null;
   }
   const view = new DataView(data.buffer, data.byteOffset, data.byteLength);

@@ -7,7 +7,9 @@ export class Frames {
   #root;
   #groups = new Map();
 
-  constructor(root) { this.#root = root; }
+  constructor(root) {
+    this.#root = root;
+  }
 
   // The group of that frame.
   of(name) {
@@ -24,7 +26,8 @@ export class Frames {
   // pose: of the child in the parent; null: unknown, the child stays where it is.
   set(parent, child, pose) {
     if (pose === null || parent === child) return;
-    const to = this.of(parent), group = this.of(child);
+    const to = this.of(parent),
+      group = this.of(child);
     if (group === this.#root || this.#isAbove(group, to)) return;
     if (group.parent !== to) to.add(group);
     const { position: p, orientation: q } = pose;

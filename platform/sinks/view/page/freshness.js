@@ -18,12 +18,16 @@ const PANELS = [
 ];
 
 export class Freshness {
-  #newest = new Map();  // by topic: when it was received, ms
+  #newest = new Map(); // by topic: when it was received, ms
   #watches = true;
 
-  constructor() { setInterval(() => this.#check(), CHECK_MS); }
+  constructor() {
+    setInterval(() => this.#check(), CHECK_MS);
+  }
 
-  received(topic) { this.#newest.set(topic, performance.now()); }
+  received(topic) {
+    this.#newest.set(topic, performance.now());
+  }
 
   // false: a recording is shown, which does not become stale.
   watch(watches) {
@@ -35,7 +39,12 @@ export class Freshness {
   #check() {
     const now = performance.now();
     for (const { id, topics } of PANELS) {
-      const stale = this.#watches && isStale(now, topics.map((topic) => this.#newest.get(topic)));
+      const stale =
+        this.#watches &&
+        isStale(
+          now,
+          topics.map((topic) => this.#newest.get(topic)),
+        );
       document.getElementById(id).classList.toggle("stale", stale);
     }
   }

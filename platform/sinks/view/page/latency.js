@@ -1,12 +1,12 @@
 // Stages of a frame's latency that the messages state: /glint/frame (or /glint/blobs) and /glint/output.
 export const STAGES = ["transport", "computing and sampling"];
-const FRAMES_MAX = 128;  // that wait for the first output that carries them
+const FRAMES_MAX = 128; // that wait for the first output that carries them
 const WINDOW_S = 2;
 
 export class Latency {
-  #frames = new Map();  // by sequence number
+  #frames = new Map(); // by sequence number
   #carried = new Set(); // frames whose first output was seen
-  #samples = [];        // [time_s, stage of STAGES in ms, ..]
+  #samples = []; // [time_s, stage of STAGES in ms, ..]
 
   addFrame({ sequence, mid_exposure_ns, arrival_ns }) {
     this.#frames.set(sequence, { exposure: mid_exposure_ns, arrival: arrival_ns });
@@ -20,7 +20,9 @@ export class Latency {
     if (state !== MEASURED || frame === undefined || this.#carried.has(frame_sequence)) return null;
     this.#carried.add(frame_sequence);
     if (this.#carried.size > FRAMES_MAX) this.#carried.delete(this.#carried.values().next().value);
-    const stages = [frame.arrival - frame.exposure, tick_ns - frame.arrival].map((ns) => Number(ns) * 1e-6);
+    const stages = [frame.arrival - frame.exposure, tick_ns - frame.arrival].map(
+      (ns) => Number(ns) * 1e-6,
+    );
     this.#samples.push([time_s, ...stages]);
     while (this.#samples[0][0] < time_s - WINDOW_S) this.#samples.shift();
     return stages;

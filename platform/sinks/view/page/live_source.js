@@ -30,7 +30,7 @@ export class LiveSource {
     const client = (this.#client = new FoxgloveClient({ ws: socket }));
     const channels = new Map();
     client.on("open", () => this.#receiver.connected());
-    client.on("error", () => {});  // "close" follows
+    client.on("error", () => {}); // "close" follows
     client.on("advertise", (added) => {
       for (const channel of added) {
         if (LARGE_TOPICS.has(channel.topic)) continue;
@@ -41,8 +41,11 @@ export class LiveSource {
     client.on("message", ({ subscriptionId, timestamp, data }) => {
       const channel = channels.get(subscriptionId);
       if (channel === undefined || this.#closed) return;
-      this.#receiver.message(channel, timestamp,
-        new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
+      this.#receiver.message(
+        channel,
+        timestamp,
+        new Uint8Array(data.buffer, data.byteOffset, data.byteLength),
+      );
     });
     client.on("close", () => {
       if (this.#closed) return;

@@ -11,9 +11,9 @@ import { SceneView } from "./scene.js";
 import { Sentences } from "./sentences.js";
 import { Tools } from "./tools.js";
 
-const DRAW_MS = 66;    // between pictures; longer on a slow computer, which then still receives
+const DRAW_MS = 66; // between pictures; longer on a slow computer, which then still receives
 const CHARTS_MS = 250;
-const IDLE_SHARE = 3;  // times what drawing takes
+const IDLE_SHARE = 3; // times what drawing takes
 
 const status = document.querySelector("#source");
 const live = document.querySelector("#live");
@@ -22,7 +22,10 @@ const drop = document.querySelector("#drop");
 
 const decoder = new Decoder();
 const freshness = new Freshness();
-const sentences = new Sentences(), picture = new Picture(), scene = new SceneView(), charts = new Charts();
+const sentences = new Sentences(),
+  picture = new Picture(),
+  scene = new SceneView(),
+  charts = new Charts();
 const recordButton = new RecordButton();
 const playback = new Playback();
 let tools = new Tools();
@@ -34,18 +37,22 @@ function reset() {
 }
 
 function show(channel, bytes) {
-  const panels = [sentences, picture, charts].filter(({ topics }) => topics.includes(channel.topic));
+  const panels = [sentences, picture, charts].filter(({ topics }) =>
+    topics.includes(channel.topic),
+  );
   if (scene.wants(channel.topic, tools)) panels.push(scene);
   if (panels.length === 0) return;
   const message = decoder.decode(channel, bytes);
   if (message === null) return;
-  if (channel.topic === "/tf") for (const transform of message.transforms) tools.transform(transform);
+  if (channel.topic === "/tf")
+    for (const transform of message.transforms) tools.transform(transform);
   for (const panel of panels) panel.show(channel.topic, message, tools);
 }
 
 function openRun() {
   playback.close();
   reset();
+  scene.aimAgain();
   live.hidden = true;
   recordButton.disabled = false;
   freshness.watch(true);
@@ -55,13 +62,17 @@ function openRun() {
   }
   source = new LiveSource(`ws://${location.host}/`, {
     connected() {
-      reset();  // another run may have started on this port
+      reset(); // another run may have started on this port
       freshness.watch(true);
       sentences.waitForFrames();
       status.textContent = `Live from ${location.host}`;
     },
-    disconnected() { status.textContent = `No run at ${location.host}: connecting again each second`; },
-    channel(channel) { tools.channel(channel); },
+    disconnected() {
+      status.textContent = `No run at ${location.host}: connecting again each second`;
+    },
+    channel(channel) {
+      tools.channel(channel);
+    },
     message(channel, time, bytes) {
       freshness.received(channel.topic);
       recordButton.message(channel, time, bytes);
@@ -85,13 +96,16 @@ async function openRecording(file) {
   live.hidden = false;
   freshness.watch(false);
   status.textContent = `Recording ${recording.name}`;
+  scene.aimAgain();
   playback.open(recording, {
     reset() {
       reset();
       for (const channel of recording.channels.values()) tools.channel(channel);
     },
     message: (channel, time, bytes) => show(channel, bytes),
-    drawn() { for (const panel of [picture, scene, charts]) panel.draw(); },
+    drawn() {
+      for (const panel of [picture, scene, charts]) panel.draw();
+    },
   });
 }
 
@@ -104,7 +118,9 @@ addEventListener("dragover", (event) => {
   event.preventDefault();
   drop.hidden = false;
 });
-addEventListener("dragleave", (event) => { if (event.relatedTarget === null) drop.hidden = true; });
+addEventListener("dragleave", (event) => {
+  if (event.relatedTarget === null) drop.hidden = true;
+});
 addEventListener("drop", (event) => {
   event.preventDefault();
   drop.hidden = true;
@@ -114,8 +130,14 @@ addEventListener("drop", (event) => {
 function repeat(draw, period_ms) {
   const begin = performance.now();
   draw();
-  setTimeout(() => repeat(draw, period_ms), Math.max(period_ms, IDLE_SHARE * (performance.now() - begin)));
+  setTimeout(
+    () => repeat(draw, period_ms),
+    Math.max(period_ms, IDLE_SHARE * (performance.now() - begin)),
+  );
 }
-repeat(() => { picture.draw(); scene.draw(); }, DRAW_MS);
+repeat(() => {
+  picture.draw();
+  scene.draw();
+}, DRAW_MS);
 repeat(() => charts.draw(), CHARTS_MS);
 openRun();

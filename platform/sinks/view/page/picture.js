@@ -3,8 +3,14 @@ import { pixelsOf, secondsOf } from "./decoding.js";
 import { Threshold } from "./threshold.js";
 import { blobClass, blobText } from "./words.js";
 
-const COLOURS = { accepted: "#4cc38a", assigned: "#e35bd8", refused: "#f0883e", roi: "#5aa9ff", chosen: "#ffffff" };
-const REACH_PX = 6;  // of the pointer, in the frame's pixels
+const COLOURS = {
+  accepted: "#4cc38a",
+  assigned: "#e35bd8",
+  refused: "#f0883e",
+  roi: "#5aa9ff",
+  chosen: "#ffffff",
+};
+const REACH_PX = 6; // of the pointer, in the frame's pixels
 
 export class Picture {
   topics = ["/glint/picture", "/glint/regions"];
@@ -14,10 +20,10 @@ export class Picture {
   #text = document.querySelector("#picture-blob");
   #hint = document.querySelector("#picture-blob").textContent;
   #pixels = document.createElement("canvas");
-  #image = null;    // the newest message
-  #values = null;   // its pixels
+  #image = null; // the newest message
+  #values = null; // its pixels
   #regions = null;
-  #chosen = null;   // { x, y } in the frame's pixels: the blob next to it is explained
+  #chosen = null; // { x, y } in the frame's pixels: the blob next to it is explained
   #changed = false;
   #threshold = new Threshold(() => (this.#changed = true));
 
@@ -62,12 +68,17 @@ export class Picture {
   // Dark pixels are raised, or only reflectors would be visible. Yellow: above the slider's threshold.
   #drawPixels(used) {
     const { width, height } = this.#image;
-    const shades = new ImageData(width, height), out = new Uint32Array(shades.data.buffer);
-    const white = used > 0 ? 2 * used : this.#values.reduce((most, value) => Math.max(most, value), 1);
+    const shades = new ImageData(width, height),
+      out = new Uint32Array(shades.data.buffer);
+    const white =
+      used > 0 ? 2 * used : this.#values.reduce((most, value) => Math.max(most, value), 1);
     const moved = this.#threshold.moved;
     this.#values.forEach((value, i) => {
       const gray = Math.min(255, 255 * Math.sqrt(value / white));
-      out[i] = moved !== null && value > moved ? 0xff00d4ff : 0xff000000 | (gray << 16) | (gray << 8) | gray;
+      out[i] =
+        moved !== null && value > moved
+          ? 0xff00d4ff
+          : 0xff000000 | (gray << 16) | (gray << 8) | gray;
     });
     this.#pixels.width = width;
     this.#pixels.height = height;
@@ -101,7 +112,12 @@ export class Picture {
     const chosen = this.#nearest();
     if (chosen === null) return;
     to.strokeStyle = COLOURS.chosen;
-    to.strokeRect(chosen.box.x - 5, chosen.box.y - 5, chosen.box.width + 10, chosen.box.height + 10);
+    to.strokeRect(
+      chosen.box.x - 5,
+      chosen.box.y - 5,
+      chosen.box.width + 10,
+      chosen.box.height + 10,
+    );
   }
 
   #isOfImage() {
@@ -111,9 +127,13 @@ export class Picture {
   // Of an event's position, in the frame's pixels: object-fit may leave a border.
   #toFrame({ offsetX, offsetY }) {
     if (this.#image === null) return null;
-    const { clientWidth: w, clientHeight: h } = this.#canvas, { width, height } = this.#image;
+    const { clientWidth: w, clientHeight: h } = this.#canvas,
+      { width, height } = this.#image;
     const scale = Math.min(w / width, h / height);
-    return { x: (offsetX - (w - width * scale) / 2) / scale, y: (offsetY - (h - height * scale) / 2) / scale };
+    return {
+      x: (offsetX - (w - width * scale) / 2) / scale,
+      y: (offsetY - (h - height * scale) / 2) / scale,
+    };
   }
 
   #choose(position) {
@@ -137,10 +157,14 @@ export class Picture {
   #nearest() {
     if (this.#chosen === null || this.#regions === null) return null;
     const { x, y } = this.#chosen;
-    let nearest = null, least = REACH_PX;
+    let nearest = null,
+      least = REACH_PX;
     for (const blob of this.#regions.blobs) {
       const { x: left, y: top, width, height } = blob.box;
-      const off = Math.hypot(Math.max(left - x, 0, x - left - width), Math.max(top - y, 0, y - top - height));
+      const off = Math.hypot(
+        Math.max(left - x, 0, x - left - width),
+        Math.max(top - y, 0, y - top - height),
+      );
       if (off < least) [nearest, least] = [blob, off];
     }
     return nearest;

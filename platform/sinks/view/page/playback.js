@@ -1,7 +1,7 @@
 // Playback of an opened recording: play, pause and the scrub bar.
 const STEP_MS = 50;
-const WINDOW_NS = 5_000_000_000n;  // what a jump reads before its target, so that charts have a past
-const STEPS = 1000;                // of the scrub bar, as index.html states it
+const WINDOW_NS = 5_000_000_000n; // what a jump reads before its target, so that charts have a past
+const STEPS = 1000; // of the scrub bar, as index.html states it
 
 export class Playback {
   #element = document.querySelector("#playback");
@@ -12,8 +12,8 @@ export class Playback {
   #receiver = null;
   #time = 0n;
   #playing = false;
-  #task = Promise.resolve();  // reads, one after the other
-  #jumps = 0;                 // requested and not yet read
+  #task = Promise.resolve(); // reads, one after the other
+  #jumps = 0; // requested and not yet read
 
   constructor() {
     this.#button.addEventListener("click", () => this.#setPlaying(!this.#playing));
@@ -38,7 +38,8 @@ export class Playback {
   }
 
   #setPlaying(playing) {
-    if (playing && this.#file !== null && this.#time >= this.#file.end) this.#jump(this.#file.start);
+    if (playing && this.#file !== null && this.#time >= this.#file.end)
+      this.#jump(this.#file.start);
     this.#playing = playing;
     this.#button.textContent = playing ? "Pause" : "Play";
   }
@@ -51,7 +52,7 @@ export class Playback {
   #jump(time) {
     this.#time = time;
     this.#showTime();
-    if (++this.#jumps > 1) return;  // the read that waits goes to the newest target
+    if (++this.#jumps > 1) return; // the read that waits goes to the newest target
     const file = this.#file;
     this.#task = this.#task.then(async () => {
       while (this.#jumps > 0 && file === this.#file) {
@@ -70,7 +71,8 @@ export class Playback {
   // Reads the next messages in real time; a slow computer plays more slowly.
   #step() {
     if (!this.#playing || this.#jumps > 0 || this.#reading) return;
-    const file = this.#file, from = this.#time + 1n;
+    const file = this.#file,
+      from = this.#time + 1n;
     let to = this.#time + BigInt(STEP_MS) * 1_000_000n;
     if (to >= file.end) to = file.end;
     this.#reading = true;
@@ -90,7 +92,8 @@ export class Playback {
 
   #showTime() {
     const { start, end } = this.#file;
-    const length = Number(end - start), at = Number(this.#time - start);
+    const length = Number(end - start),
+      at = Number(this.#time - start);
     this.#bar.value = String(length > 0 ? Math.round((at / length) * STEPS) : 0);
     this.#label.textContent = `${(at * 1e-9).toFixed(1)} s of ${(length * 1e-9).toFixed(1)} s`;
   }

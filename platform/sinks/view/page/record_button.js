@@ -7,13 +7,19 @@ export class RecordButton {
   #begin = 0;
 
   constructor() {
-    this.#button.addEventListener("click", () => (this.#recorder === null ? this.#start() : this.stop()));
+    this.#button.addEventListener("click", () =>
+      this.#recorder === null ? this.#start() : this.stop(),
+    );
     setInterval(() => this.#label(), 500);
   }
 
-  set disabled(value) { this.#button.disabled = value; }
+  set disabled(value) {
+    this.#button.disabled = value;
+  }
 
-  message(channel, time, bytes) { this.#recorder?.add(channel, time, bytes); }
+  message(channel, time, bytes) {
+    this.#recorder?.add(channel, time, bytes);
+  }
 
   async stop() {
     const recorder = this.#recorder;

@@ -2,8 +2,12 @@
 import { McapIndexedReader } from "@mcap/core";
 
 class BlobReadable {
-  constructor(blob) { this.blob = blob; }
-  async size() { return BigInt(this.blob.size); }
+  constructor(blob) {
+    this.blob = blob;
+  }
+  async size() {
+    return BigInt(this.blob.size);
+  }
   async read(offset, length) {
     const part = this.blob.slice(Number(offset), Number(offset + length));
     return new Uint8Array(await part.arrayBuffer());
@@ -17,25 +21,33 @@ export class RecordingFile {
     try {
       reader = await McapIndexedReader.Initialize({ readable: new BlobReadable(file) });
     } catch (error) {
-      throw new Error(`${file.name}: no complete MCAP recording (${error.message}); expected a file that a run closed`);
+      throw new Error(
+        `${file.name}: no complete MCAP recording (${error.message}); expected a file that a run closed`,
+      );
     }
-    if (reader.chunkIndexes.length === 0) throw new Error(`${file.name}: no messages; expected a recording with chunks`);
+    if (reader.chunkIndexes.length === 0)
+      throw new Error(`${file.name}: no messages; expected a recording with chunks`);
     return new RecordingFile(file.name, reader);
   }
 
   constructor(name, reader) {
     this.name = name;
     this.reader = reader;
-    const least = (a, b) => (a < b ? a : b), largest = (a, b) => (a > b ? a : b);
+    const least = (a, b) => (a < b ? a : b),
+      largest = (a, b) => (a > b ? a : b);
     this.start = reader.chunkIndexes.map((chunk) => chunk.messageStartTime).reduce(least);
     this.end = reader.chunkIndexes.map((chunk) => chunk.messageEndTime).reduce(largest);
     const text = new TextDecoder();
     this.channels = new Map();
     for (const channel of reader.channelsById.values()) {
       const schema = reader.schemasById.get(channel.schemaId);
-      this.channels.set(channel.id, { id: channel.id, topic: channel.topic,
-        encoding: channel.messageEncoding, schemaName: schema?.name ?? "",
-        schema: schema ? text.decode(schema.data) : "" });
+      this.channels.set(channel.id, {
+        id: channel.id,
+        topic: channel.topic,
+        encoding: channel.messageEncoding,
+        schemaName: schema?.name ?? "",
+        schema: schema ? text.decode(schema.data) : "",
+      });
     }
   }
 

@@ -1,15 +1,26 @@
 // The scene in space: headset, tools with their 95 % ellipsoids, strokes, robot, and the markers
 // of /glint/scene, each in its own frame.
-import { AxesHelper, Color, GridHelper, Group, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import {
+  AxesHelper,
+  Color,
+  GridHelper,
+  Group,
+  HemisphereLight,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+} from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { Frames } from "./frames.js";
 import { MarkerObjects } from "./scene_markers.js";
-import { headsetObject, setEllipsoid, StrokeLines, toolObject } from "./scene_objects.js";
+import { headsetObject, setEllipsoid, toolObject } from "./scene_objects.js";
 import { Robot } from "./scene_robot.js";
+import { StrokeLines } from "./strokes.js";
 
 const NO_WEBGL = "This browser offers no WebGL: the scene in space is not drawn.";
-const DRAW = 1;  // glint_msgs/PenButtons
+const DRAW = 1; // glint_msgs/PenButtons
 
 export class SceneView {
   #panel = document.querySelector("#scene");
@@ -40,8 +51,24 @@ export class SceneView {
   }
 
   wants(topic, tools) {
-    return ["/tf", "/tf_static", "/glint/head_pose", "/glint/robot_frame", "/glint/pen_buttons", "/glint/output", "/glint/scene",
-      "/robot_description", "/joint_states"].includes(topic) || tools.poseTool(topic) >= 0;
+    return (
+      [
+        "/tf",
+        "/tf_static",
+        "/glint/head_pose",
+        "/glint/robot_frame",
+        "/glint/pen_buttons",
+        "/glint/output",
+        "/glint/scene",
+        "/robot_description",
+        "/joint_states",
+      ].includes(topic) || tools.poseTool(topic) >= 0
+    );
+  }
+
+  // The next pose is put into the middle, as the first one is.
+  aimAgain() {
+    this.#aimed = false;
   }
 
   reset() {
@@ -56,7 +83,7 @@ export class SceneView {
     this.robot = new Robot(this.frames);
     this.strokes = new StrokeLines(this.frames);
     this.#headset = null;
-    this.#draws = this.#aimed = false;
+    this.#draws = false;
     this.#panel.classList.remove("has-data");
     this.#text.textContent = "";
     this.#changed = true;
@@ -69,7 +96,8 @@ export class SceneView {
   show(topic, message, tools) {
     this.#changed = true;
     if (topic === "/glint/head_pose") this.#head(message);
-    else if (topic === "/glint/robot_frame") this.frames.set("hmd_world", "robot_base", message.in_reference ? null : message.pose);
+    else if (topic === "/glint/robot_frame")
+      this.frames.set("hmd_world", "robot_base", message.in_reference ? null : message.pose);
     else if (topic === "/tf" || topic === "/tf_static") this.#transforms(message);
     else if (topic === "/glint/pen_buttons") this.#draws = (message.held & DRAW) !== 0;
     else if (topic === "/glint/scene") this.markers.show(message);
@@ -91,7 +119,10 @@ export class SceneView {
   #transforms({ transforms }) {
     for (const { header, child_frame_id, transform } of transforms) {
       if (/^glint_\w+_tip$/.test(child_frame_id) || child_frame_id === "hmd_tof_optical") continue;
-      this.frames.set(header.frame_id, child_frame_id, { position: transform.translation, orientation: transform.rotation });
+      this.frames.set(header.frame_id, child_frame_id, {
+        position: transform.translation,
+        orientation: transform.rotation,
+      });
     }
   }
 
@@ -102,13 +133,15 @@ export class SceneView {
       this.tools.set(number, tool);
     }
     this.frames.of(header.frame_id).add(tool.group);
-    const { x, y, z } = pose.position, q = pose.orientation;
+    const { x, y, z } = pose.position,
+      q = pose.orientation;
     tool.group.position.set(x, y, z);
     tool.pen.quaternion.set(q.x, q.y, q.z, q.w);
     tool.group.visible = true;
     tool.name = name;
     tool.axes = setEllipsoid(tool.ellipsoid, covariance);
     if (number === 0) this.strokes.add(header.frame_id, pose.position, this.#draws);
+    if (!this.#panel.classList.contains("has-data")) this.#panel.classList.add("has-data");
     if (!this.#aimed) this.#aim(tool.group);
   }
 
@@ -122,16 +155,16 @@ export class SceneView {
   // The first pose is put into the middle.
   #aim(object) {
     this.#aimed = true;
-    this.#panel.classList.add("has-data");
     this.#scene.updateMatrixWorld(true);
     const target = object.getWorldPosition(new Vector3());
     this.#controls.target.copy(target);
-    this.#camera.position.copy(target).add(new Vector3(-0.7, -0.9, 0.5));
+    this.#camera.position.copy(target).add(new Vector3(-0.55, -0.7, 0.4));
     this.#controls.update();
   }
 
   #key(event) {
-    const TURN = 0.12, ZOOM = 1.15;
+    const TURN = 0.12,
+      ZOOM = 1.15;
     const offset = this.#camera.position.clone().sub(this.#controls.target);
     const side = new Vector3().crossVectors(offset, this.#camera.up).normalize();
     if (event.key === "ArrowLeft") offset.applyAxisAngle(this.#camera.up, -TURN);
@@ -163,9 +196,16 @@ export class SceneView {
     const parts = ["Grid: 100 mm."];
     for (const { group, name, axes } of this.tools.values()) {
       if (!group.visible) continue;
-      const half = axes === null ? "no covariance"
-        : `95 % ellipsoid with half axes ${axes.map((axis) => (axis * 1e3).toFixed(1)).join(", ")} mm`;
-      parts.push(`${name}: tip at (${group.position.toArray().map((m) => (m * 1e3).toFixed(0)).join(", ")}) mm, ${half}.`);
+      const half =
+        axes === null
+          ? "no covariance"
+          : `95 % ellipsoid with half axes ${axes.map((axis) => (axis * 1e3).toFixed(1)).join(", ")} mm`;
+      parts.push(
+        `${name}: tip at (${group.position
+          .toArray()
+          .map((m) => (m * 1e3).toFixed(0))
+          .join(", ")}) mm, ${half}.`,
+      );
     }
     if (this.robot.text !== "") parts.push(this.robot.text);
     if (this.strokes.count > 0) parts.push(`${this.strokes.count} points of strokes.`);

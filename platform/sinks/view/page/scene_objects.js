@@ -1,23 +1,58 @@
-// What the scene draws by itself: headset, tool, covariance ellipsoid and strokes.
-import { AxesHelper, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, Group, Line, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry } from "three";
+// What the scene draws by itself: headset, tool and covariance ellipsoid.
+import {
+  AxesHelper,
+  BufferAttribute,
+  BufferGeometry,
+  ConeGeometry,
+  CylinderGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  SphereGeometry,
+} from "three";
 
 import { positionEllipsoid } from "./ellipsoid.js";
 
-const LENGTH_M = 0.16;  // of the drawn stick: the messages do not state the tool's shape
+const LENGTH_M = 0.16; // of the drawn stick: the messages do not state the tool's shape
 
 // The camera's pyramid of view, 75 degrees wide as that of an AHAT lens is drawn here: z forward.
 export function headsetObject() {
-  const group = new Group(), depth = 0.12, half = depth * Math.tan((37.5 * Math.PI) / 180);
-  const corners = [[-half, -half], [half, -half], [half, half], [-half, half]].map(([x, y]) => [x, y, depth]);
-  const points = corners.flatMap((corner, i) => [0, 0, 0, ...corner, ...corner, ...corners[(i + 1) % 4]]);
-  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
-  group.add(new LineSegments(geometry, new LineBasicMaterial({ color: "#5aa9ff" })), new AxesHelper(0.04));
+  const group = new Group(),
+    depth = 0.12,
+    half = depth * Math.tan((37.5 * Math.PI) / 180);
+  const corners = [
+    [-half, -half],
+    [half, -half],
+    [half, half],
+    [-half, half],
+  ].map(([x, y]) => [x, y, depth]);
+  const points = corners.flatMap((corner, i) => [
+    0,
+    0,
+    0,
+    ...corner,
+    ...corner,
+    ...corners[(i + 1) % 4],
+  ]);
+  const geometry = new BufferGeometry().setAttribute(
+    "position",
+    new BufferAttribute(new Float32Array(points), 3),
+  );
+  group.add(
+    new LineSegments(geometry, new LineBasicMaterial({ color: "#5aa9ff" })),
+    new AxesHelper(0.04),
+  );
   return group;
 }
 
 // A stick whose tip is the origin, z from the tip up the stick.
 export function toolObject() {
-  const group = new Group(), pen = new Group();
+  const group = new Group(),
+    pen = new Group();
   const material = new MeshLambertMaterial({ color: "#d9dee4" });
   const cone = new Mesh(new ConeGeometry(0.004, 0.02, 16), material);
   cone.rotation.x = -Math.PI / 2;
@@ -26,8 +61,10 @@ export function toolObject() {
   stick.rotation.x = Math.PI / 2;
   stick.position.z = 0.02 + (LENGTH_M - 0.02) / 2;
   pen.add(cone, stick, new AxesHelper(0.05));
-  const ellipsoid = new Mesh(new SphereGeometry(1, 32, 20),
-    new MeshBasicMaterial({ color: "#e35bd8", transparent: true, opacity: 0.4, depthWrite: false }));
+  const ellipsoid = new Mesh(
+    new SphereGeometry(1, 32, 20),
+    new MeshBasicMaterial({ color: "#e35bd8", transparent: true, opacity: 0.4, depthWrite: false }),
+  );
   ellipsoid.matrixAutoUpdate = false;
   group.add(pen, ellipsoid);
   return { group, pen, ellipsoid, name: "", axes: null };
@@ -40,59 +77,23 @@ export function setEllipsoid(mesh, covariance) {
   if (found === null) return null;
   const { axes, directions: d } = found;
   mesh.matrix = new Matrix4().set(
-    d[0][0] * axes[0], d[0][1] * axes[1], d[0][2] * axes[2], 0,
-    d[1][0] * axes[0], d[1][1] * axes[1], d[1][2] * axes[2], 0,
-    d[2][0] * axes[0], d[2][1] * axes[1], d[2][2] * axes[2], 0, 0, 0, 0, 1);
+    d[0][0] * axes[0],
+    d[0][1] * axes[1],
+    d[0][2] * axes[2],
+    0,
+    d[1][0] * axes[0],
+    d[1][1] * axes[1],
+    d[1][2] * axes[2],
+    0,
+    d[2][0] * axes[0],
+    d[2][1] * axes[1],
+    d[2][2] * axes[2],
+    0,
+    0,
+    0,
+    0,
+    1,
+  );
   mesh.matrixWorldNeedsUpdate = true;
   return [...axes].sort((a, b) => b - a);
-}
-
-const POINTS_MAX = 5000;      // of all strokes
-const SPACING_M = 0.001;
-const TRAIL_POINTS_MAX = 200; // of the tip's path without a held button
-
-// Strokes of the first tool while its button is held, and a short trail of its tip otherwise.
-export class StrokeLines {
-  #frames;
-  #lines = [];
-  #current = null;
-  count = 0;
-
-  constructor(frames) { this.#frames = frames; }
-
-  add(frame, { x, y, z }, isDrawn) {
-    if (this.#current?.frame !== frame || this.#current.isDrawn !== isDrawn) this.#begin(frame, isDrawn);
-    const { points } = this.#current, last = points.at(-1);
-    if (last !== undefined && Math.hypot(x - last[0], y - last[1], z - last[2]) < SPACING_M) return;
-    if (isDrawn && ++this.count > POINTS_MAX) return;
-    points.push([x, y, z]);
-    if (!isDrawn && points.length > TRAIL_POINTS_MAX) points.shift();
-    this.#current.changed = true;
-  }
-
-  interrupt() { if (this.#current !== null) this.#begin(this.#current.frame, this.#current.isDrawn); }
-
-  #begin(frame, isDrawn) {
-    if (this.#current !== null && (!this.#current.isDrawn || this.#current.points.length === 0)) this.#remove();
-    const line = new Line(new BufferGeometry(), new LineBasicMaterial({ color: isDrawn ? "#ffd400" : "#7d8a97" }));
-    line.frustumCulled = false;
-    this.#frames.of(frame).add(line);
-    this.#current = { frame, isDrawn, line, points: [], changed: false };
-    this.#lines.push(this.#current);
-  }
-
-  #remove() {
-    const { line } = this.#lines.pop();
-    line.removeFromParent();
-    line.geometry.dispose();
-  }
-
-  draw() {
-    for (const entry of this.#lines) {
-      if (!entry.changed) continue;
-      entry.changed = false;
-      entry.line.geometry.dispose();
-      entry.line.geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(entry.points.flat()), 3));
-    }
-  }
 }

@@ -9,7 +9,9 @@ export class Robot {
   #joints = null;
   text = "";
 
-  constructor(frames) { this.#frames = frames; }
+  constructor(frames) {
+    this.#frames = frames;
+  }
 
   describe(urdf) {
     if (urdf === this.#description) return;
@@ -32,11 +34,13 @@ export class Robot {
     }
     // The pen may be behind the robot, or inside the boxes that bound it.
     this.#robot.traverse(({ material }) => {
-      if (material) Object.assign(material, { transparent: true, opacity: 0.45, depthWrite: false });
+      if (material)
+        Object.assign(material, { transparent: true, opacity: 0.45, depthWrite: false });
     });
     for (const link of Object.values(this.#robot.links)) link.add(new AxesHelper(0.04));
     this.#frames.of("robot_base").add(this.#robot);
-    this.text = `Robot ${this.#robot.robotName}: ${Object.keys(this.#robot.links).length} links` +
+    this.text =
+      `Robot ${this.#robot.robotName}: ${Object.keys(this.#robot.links).length} links` +
       (left > 0 ? `, ${left} meshes not loaded.` : ".");
     if (this.#joints !== null) this.setJoints(this.#joints);
   }

@@ -6,7 +6,7 @@ const TOOLS_MAX = 16;
 export class Sentences {
   topics = ["/glint/explanation", "/glint/output"];
   #element = document.querySelector("#sentences");
-  #lines = new Map();  // by key of #set
+  #lines = new Map(); // by key of #set
   #explained = false;
 
   reset() {
@@ -17,8 +17,13 @@ export class Sentences {
 
   // A run sends neither outputs nor explanations before its first frame.
   waitForFrames() {
-    this.#element.replaceChildren(line("none", "Connected, but the run has received no frame yet. " +
-      "Check that the source of the frames runs and is connected.").element);
+    this.#element.replaceChildren(
+      line(
+        "none",
+        "Connected, but the run has received no frame yet. " +
+          "Check that the source of the frames runs and is connected.",
+      ).element,
+    );
   }
 
   show(topic, message, tools) {
@@ -27,8 +32,12 @@ export class Sentences {
       this.#explained = true;
       this.#set(message.tool, message.tool, message.state, message.text);
     } else if (!this.#explained) {
-      this.#set(message.tool, tools.nameOf(message.tool), STATES[message.state] ?? "none",
-        sentenceOfOutput(message));
+      this.#set(
+        message.tool,
+        tools.nameOf(message.tool),
+        STATES[message.state] ?? "none",
+        sentenceOfOutput(message),
+      );
     }
   }
 

@@ -12,10 +12,12 @@ const REDUCTIONS = {
 
 export class Series {
   #reduce;
-  #bins = new Map();  // by number of the bin
+  #bins = new Map(); // by number of the bin
   #last = -Infinity;
 
-  constructor(reduction) { this.#reduce = REDUCTIONS[reduction]; }
+  constructor(reduction) {
+    this.#reduce = REDUCTIONS[reduction];
+  }
 
   add(time_s, value) {
     const bin = Math.floor(time_s / BIN_S);
@@ -34,6 +36,7 @@ export class Series {
 }
 
 // Times of those bins, in seconds before the newest.
-export const binTimes = () => Array.from({ length: BINS_MAX }, (_, i) => (i - BINS_MAX + 1) * BIN_S);
+export const binTimes = () =>
+  Array.from({ length: BINS_MAX }, (_, i) => (i - BINS_MAX + 1) * BIN_S);
 
 export const binOf = (time_s) => Math.floor(time_s / BIN_S);

@@ -29,7 +29,7 @@ export class Threshold {
         await navigator.clipboard.writeText(this.#line.textContent);
         this.#copy.textContent = "Copied";
       } catch {
-        getSelection().selectAllChildren(this.#line);  // the clipboard is refused: ready to copy
+        getSelection().selectAllChildren(this.#line); // the clipboard is refused: ready to copy
         this.#copy.textContent = "Selected";
       }
       setTimeout(() => (this.#copy.textContent = "Copy"), 1500);
@@ -43,7 +43,9 @@ export class Threshold {
   }
 
   // Of the slider; null while it is where the run's threshold is.
-  get moved() { return this.#moved ? Number(this.#slider.value) : null; }
+  get moved() {
+    return this.#moved ? Number(this.#slider.value) : null;
+  }
 
   // values: of the newest picture; used: the threshold of its frame, or 0.
   show(values, used) {

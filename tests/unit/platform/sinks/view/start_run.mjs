@@ -2,11 +2,10 @@
 import { spawn } from "node:child_process";
 import { join } from "node:path";
 
-// Returns a function that starts a run; `address` resolves once it listens. With --keys its
-// standard input is a terminal, to which `process.stdin` writes.
-export const runStarter = (glint, folder) => (port, name, ...options) => {
-  const run = spawn(...commandOf([glint, "run", "--no-dds", "--view", port, "--out", join(folder, name),
-    "--json", join(folder, `${name}.json`), ...options]));
+// Starts glint with a live view; `address` resolves once it listens. With --keys its standard input is
+// a terminal, to which `process.stdin` writes.
+export function startView(glint, ...options) {
+  const run = spawn(...commandOf([glint, ...options]));
   let output = "";
   const ended = new Promise((resolve) => run.on("exit", resolve));
   const address = new Promise((resolve, reject) => {
@@ -19,7 +18,12 @@ export const runStarter = (glint, folder) => (port, name, ...options) => {
   });
   run.stderr.on("data", (text) => (output += text));
   return { ended, address, process: run, output: () => output };
-};
+}
+
+// Returns a function that starts a run.
+export const runStarter = (glint, folder) => (port, name, ...options) =>
+  startView(glint, "run", "--no-dds", "--view", port, "--out", join(folder, name),
+    "--json", join(folder, `${name}.json`), ...options);
 
 // --keys reads a terminal: util-linux's script makes one.
 function commandOf(command) {

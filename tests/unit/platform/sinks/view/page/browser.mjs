@@ -3,19 +3,22 @@ import assert from "node:assert/strict";
 
 import puppeteer from "puppeteer-core";
 
-const LIMIT_MS = 120_000;  // of any condition: a busy machine is slow
+const LIMIT_MS = 120_000; // of any condition: a busy machine is slow
 
-export const startBrowser = (program) => puppeteer.launch({
-  executablePath: program,
-  args: ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"],
-  protocolTimeout: 2 * LIMIT_MS,
-});
+export const startBrowser = (program) =>
+  puppeteer.launch({
+    executablePath: program,
+    args: ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"],
+    protocolTimeout: 2 * LIMIT_MS,
+  });
 
 // Opens the page of ws://HOST:PORT. Any request to another origin is aborted and makes close() fail.
 export async function openPage(browser, address, downloads) {
   const { host } = new URL(address);
   const page = await browser.newPage();
-  const outside = [], errors = [], frames = [];
+  const outside = [],
+    errors = [],
+    frames = [];
   await page.setViewport({ width: 1280, height: 800 });
   page.on("pageerror", (error) => errors.push(error.stack ?? error.message));
   page.on("console", (message) => {
@@ -24,7 +27,8 @@ export async function openPage(browser, address, downloads) {
   await page.setRequestInterception(true);
   page.on("request", (request) => {
     const url = new URL(request.url());
-    if (url.host === host || url.protocol === "data:" || url.protocol === "blob:") return request.continue();
+    if (url.host === host || url.protocol === "data:" || url.protocol === "blob:")
+      return request.continue();
     outside.push(request.url());
     return request.abort();
   });
@@ -38,18 +42,24 @@ export async function openPage(browser, address, downloads) {
     if (opcode === BINARY) frames.push(Buffer.from(payloadData, "base64"));
   });
   if (downloads) {
-    await session.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
+    await session.send("Browser.setDownloadBehavior", {
+      behavior: "allow",
+      downloadPath: downloads,
+    });
   }
   await page.goto(`http://${host}/`);
   return {
-    page, frames,
+    page,
+    frames,
     text: (selector) => page.$eval(selector, (element) => element.textContent),
     // Waits until condition(...values) holds in the page; fails with the page's text.
     async until(what, condition, ...values) {
       try {
         await page.waitForFunction(condition, { timeout: LIMIT_MS, polling: 50 }, ...values);
       } catch {
-        assert.fail(`not seen: ${what}; the page shows: ${await page.$eval("body", (body) => body.innerText)}`);
+        assert.fail(
+          `not seen: ${what}; the page shows: ${await page.$eval("body", (body) => body.innerText)}`,
+        );
       }
     },
     async close() {

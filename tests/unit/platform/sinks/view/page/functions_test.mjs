@@ -12,7 +12,10 @@ const { countAbove } = await load("threshold.js");
 const { blobClass, blobText, stateClass } = await load("words.js");
 
 const close = (found, expected, what) =>
-  assert.ok(Math.abs(found - expected) <= 1e-9 * Math.max(1, Math.abs(expected)), `${what}: ${found}, expected ${expected}`);
+  assert.ok(
+    Math.abs(found - expected) <= 1e-9 * Math.max(1, Math.abs(expected)),
+    `${what}: ${found}, expected ${expected}`,
+  );
 
 test("the ellipsoid's axes satisfy A v = lambda v", () => {
   const matrix = [4, 1, -2, 1, 3, 0.5, -2, 0.5, 9];
@@ -28,7 +31,8 @@ test("the ellipsoid's axes satisfy A v = lambda v", () => {
 test("95 % of a sphere's errors are within 2.7955 standard deviations", () => {
   const covariance = Array(36).fill(0);
   for (const i of [0, 7, 14]) covariance[i] = 4e-6;
-  for (const axis of positionEllipsoid(covariance).axes) assert.ok(Math.abs(axis / 0.002 - 2.7955) < 1e-4, `${axis}`);
+  for (const axis of positionEllipsoid(covariance).axes)
+    assert.ok(Math.abs(axis / 0.002 - 2.7955) < 1e-4, `${axis}`);
   assert.equal(positionEllipsoid(Array(36).fill(0)), null);
   covariance[7] = NaN;
   assert.equal(positionEllipsoid(covariance), null);
@@ -65,7 +69,15 @@ test("a series keeps 30 s, and a gap stays a gap", () => {
 test("words and colours follow state and reason", () => {
   assert.equal(stateClass("never_found"), "never_found");
   assert.equal(stateClass("constructor"), "none");
-  const blob = { x_px: 10, y_px: 20, area_px: 12, peak: 2000, reason: "too_small", marker: "", distance_m: 0.5 };
+  const blob = {
+    x_px: 10,
+    y_px: 20,
+    area_px: 12,
+    peak: 2000,
+    reason: "too_small",
+    marker: "",
+    distance_m: 0.5,
+  };
   assert.equal(blobClass(blob), "refused");
   assert.match(blobText(blob), /refused: too small.* 500 mm/);
   assert.equal(blobClass({ ...blob, reason: "", marker: "pen/1" }), "assigned");
