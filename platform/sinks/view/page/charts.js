@@ -111,8 +111,7 @@ export class Charts {
   draw() {
     if (!Number.isFinite(this.newest_s)) return;
     if (this.plots.length === 0) this.#build();
-    // The newest bin is not complete yet.
-    const last = binOf(this.newest_s) - 1;
+    const last = binOf(this.newest_s);
     STRIPS.forEach((_, i) => {
       this.plots[i].setData([
         this.#times,
@@ -122,7 +121,7 @@ export class Charts {
     const [transport, rest] = this.stages.map((stage) => stage.values(last));
     const total = transport.map((ms, i) => (ms === null ? null : ms + rest[i]));
     this.plots[STRIPS.length].setData([this.#times, total, transport]);
-    this.plots[STRIPS.length + 1].setData([this.#times, rate(this.frames.values(last))]);
+    this.plots[STRIPS.length + 1].setData([this.#times, rate(this.frames.values(last - 1))]);
     this.#drawLatency();
     this.#losses.textContent = `Losses seen in these messages: ${Object.entries(this.counts)
       .map(([name, count]) => `${name} ${count}`)
@@ -146,7 +145,7 @@ export class Charts {
     this.#bar.setAttribute("aria-label", `${texts.join(", ")}; sum ${sum.toFixed(1)} ms`);
     this.#text.textContent =
       `Mid-exposure to the tick that carries the frame first: ${sum.toFixed(1)} ms ` +
-      `(${texts.join(", ")}). Sending, the time on the bus and the bus load are not in these messages: the run's table states them.`;
+      `(${texts.join(", ")}). Sending, bus time and bus load are in no message: the run's table has them.`;
   }
 
   #build() {

@@ -5,7 +5,7 @@ import { MessageReader } from "@foxglove/rosmsg2-serialization";
 export class Decoder {
   #readers = new Map();
 
-  // channel: { topic, encoding, schemaName, schema }. Returns the message, or null if the channel is
+  // channel: { topic, encoding, schemaName, schema }. Returns the message, or null if that is
   // not CDR of a ROS 2 definition or the bytes do not fit it.
   decode(channel, bytes) {
     if (channel.encoding !== "cdr") return null;

@@ -1,7 +1,15 @@
-// Coordinate frames of the messages as nested groups. A frame without a known parent is at the root.
-import { Group } from "three";
+// Coordinate frames of the messages as nested groups. A frame without a parent is at the root.
+import { Group, Quaternion, Vector3 } from "three";
 
 const FRAMES_MAX = 64;
+
+export function inverseOf({ position: p, orientation: q }) {
+  const orientation = new Quaternion(q.x, q.y, q.z, q.w).invert();
+  return {
+    position: new Vector3(p.x, p.y, p.z).negate().applyQuaternion(orientation),
+    orientation,
+  };
+}
 
 export class Frames {
   #root;

@@ -1,6 +1,6 @@
 // Panels without new messages turn grey: within 0.5 s of the last one, with a margin for the check
 // itself. A camera sends at least 5 frames a second.
-export const LIMIT_MS = 350;
+export const LIMIT_MS = 400;
 export const CHECK_MS = 50;
 
 // received: times of the newest message of each topic. A panel that never received any shows that

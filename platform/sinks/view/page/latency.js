@@ -1,4 +1,4 @@
-// Stages of a frame's latency that the messages state: /glint/frame (or /glint/blobs) and /glint/output.
+// Stages of a frame's latency that the messages state: those of frames and of outputs.
 export const STAGES = ["transport", "computing and sampling"];
 const FRAMES_MAX = 128; // that wait for the first output that carries them
 const WINDOW_S = 2;

@@ -65,7 +65,7 @@ export class Picture {
     this.#explain();
   }
 
-  // Dark pixels are raised, or only reflectors would be visible. Yellow: above the slider's threshold.
+  // Dark pixels are raised: else only reflectors are visible. Yellow: above the slider's threshold.
   #drawPixels(used) {
     const { width, height } = this.#image;
     const shades = new ImageData(width, height),

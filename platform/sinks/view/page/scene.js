@@ -13,7 +13,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-import { Frames } from "./frames.js";
+import { Frames, inverseOf } from "./frames.js";
 import { MarkerObjects } from "./scene_markers.js";
 import { headsetObject, setEllipsoid, toolObject } from "./scene_objects.js";
 import { Robot } from "./scene_robot.js";
@@ -21,6 +21,7 @@ import { StrokeLines } from "./strokes.js";
 
 const NO_WEBGL = "This browser offers no WebGL: the scene in space is not drawn.";
 const DRAW = 1; // glint_msgs/PenButtons
+const ROBOT_POSES = ["", "given", "accepted", "refused"]; // glint_msgs/RobotFrame
 
 export class SceneView {
   #panel = document.querySelector("#scene");
@@ -83,6 +84,7 @@ export class SceneView {
     this.robot = new Robot(this.frames);
     this.strokes = new StrokeLines(this.frames);
     this.#headset = null;
+    this.#robotPose = "";
     this.#draws = false;
     this.#panel.classList.remove("has-data");
     this.#text.textContent = "";
@@ -90,14 +92,14 @@ export class SceneView {
   }
   #root = null;
   #headset = null;
+  #robotPose = "";
   #draws = false;
   #aimed = false;
 
   show(topic, message, tools) {
     this.#changed = true;
     if (topic === "/glint/head_pose") this.#head(message);
-    else if (topic === "/glint/robot_frame")
-      this.frames.set("hmd_world", "robot_base", message.in_reference ? null : message.pose);
+    else if (topic === "/glint/robot_frame") this.#robotFrame(message);
     else if (topic === "/tf" || topic === "/tf_static") this.#transforms(message);
     else if (topic === "/glint/pen_buttons") this.#draws = (message.held & DRAW) !== 0;
     else if (topic === "/glint/scene") this.markers.show(message);
@@ -107,11 +109,19 @@ export class SceneView {
     else this.#pose(tools.nameOf(tools.poseTool(topic)), tools.poseTool(topic), message);
   }
 
+  // The robot's base stays at the root, also when the headset finds it elsewhere.
+  #robotFrame({ state, in_reference, pose }) {
+    this.#robotPose = ROBOT_POSES[state] ?? "";
+    if (this.#robotPose === "" || in_reference) return;
+    this.frames.set("robot_base", "hmd_world", inverseOf(pose));
+  }
+
   #head({ valid, pose }) {
     if (!valid) return;
     this.frames.set("hmd_world", "hmd_tof_optical", pose);
     if (this.#headset !== null) return;
     this.#headset = headsetObject();
+    this.#panel.classList.add("has-data");
     this.frames.of("hmd_tof_optical").add(this.#headset);
   }
 
@@ -196,10 +206,8 @@ export class SceneView {
     const parts = ["Grid: 100 mm."];
     for (const { group, name, axes } of this.tools.values()) {
       if (!group.visible) continue;
-      const half =
-        axes === null
-          ? "no covariance"
-          : `95 % ellipsoid with half axes ${axes.map((axis) => (axis * 1e3).toFixed(1)).join(", ")} mm`;
+      const millimetres = axes?.map((axis) => (axis * 1e3).toFixed(1)).join(", ");
+      const half = axes ? `95 % ellipsoid with half axes ${millimetres} mm` : "no covariance";
       parts.push(
         `${name}: tip at (${group.position
           .toArray()
@@ -207,8 +215,9 @@ export class SceneView {
           .join(", ")}) mm, ${half}.`,
       );
     }
+    if (this.#robotPose !== "") parts.push(`Robot's pose: ${this.#robotPose}.`);
     if (this.robot.text !== "") parts.push(this.robot.text);
-    if (this.strokes.count > 0) parts.push(`${this.strokes.count} points of strokes.`);
+    if (this.strokes.count > 0) parts.push(`Strokes: ${this.strokes.count} points.`);
     this.#text.textContent = parts.join(" ");
   }
 }

@@ -11,7 +11,7 @@ export function stripPlot(host, { title, unit, names }, series, times) {
   const showValues = (plot) => {
     heading.textContent = headingOf(plot, title, text);
   };
-  const range = names ? [0, names.length - 1] : (_, low, high) => [0, Math.max(high * 1.1, 1e-3)];
+  const range = names ? [0, names.length - 1] : (_, low, high) => [0, Math.max(high * 1.1, 1)];
   const valueAxis = names
     ? { size: 96, splits: () => [...names.keys()], values: () => names }
     : { size: 64, values: (_, ticks) => ticks.map((tick) => `${tick} ${unit}`) };
@@ -28,12 +28,22 @@ export function stripPlot(host, { title, unit, names }, series, times) {
   return new uPlot(options, [times, ...series.map(() => [])], host);
 }
 
+// The newest bin may still be without a value.
+const NEWEST_BINS = 5;
+
+function newest(values) {
+  for (let i = values.length - 1; i >= values.length - NEWEST_BINS; --i) {
+    if (values[i] !== null && values[i] !== undefined) return values[i];
+  }
+  return null;
+}
+
 function headingOf(plot, title, text) {
   const pointed = plot.cursor.idx ?? null;
-  const at = pointed ?? plot.data[0].length - 1;
-  const when = pointed === null ? "" : ` at ${plot.data[0][at].toFixed(1)} s`;
+  const when = pointed === null ? "" : ` at ${plot.data[0][pointed].toFixed(1)} s`;
   const parts = plot.series.slice(1).map(({ label }, i) => {
-    const value = plot.data[i + 1][at] ?? null;
+    const values = plot.data[i + 1];
+    const value = pointed === null ? newest(values) : (values[pointed] ?? null);
     const name = plot.series.length > 2 ? `${label} ` : "";
     return value === null ? `${name}none` : name + text(value);
   });

@@ -7,7 +7,7 @@ export function countAbove(values, threshold) {
   return count;
 }
 
-export const cellLine = (threshold) => `[camera] threshold = ${threshold}`;
+export const cellLine = (threshold) => `threshold = ${threshold}`;
 
 export class Threshold {
   #slider = document.querySelector("#threshold-slider");

@@ -2,8 +2,8 @@
 import { spawn } from "node:child_process";
 import { join } from "node:path";
 
-// Starts glint with a live view; `address` resolves once it listens. With --keys its standard input is
-// a terminal, to which `process.stdin` writes.
+// Starts glint with a live view; `address` resolves once it listens. With --keys its standard input
+// is a terminal, to which `process.stdin` writes.
 export function startView(glint, ...options) {
   const run = spawn(...commandOf([glint, ...options]));
   let output = "";

@@ -12,7 +12,7 @@ export const startBrowser = (program) =>
     protocolTimeout: 2 * LIMIT_MS,
   });
 
-// Opens the page of ws://HOST:PORT. Any request to another origin is aborted and makes close() fail.
+// Opens the page of ws://HOST:PORT. A request to another origin is aborted and makes close() fail.
 export async function openPage(browser, address, downloads) {
   const { host } = new URL(address);
   const page = await browser.newPage();
@@ -57,9 +57,8 @@ export async function openPage(browser, address, downloads) {
       try {
         await page.waitForFunction(condition, { timeout: LIMIT_MS, polling: 50 }, ...values);
       } catch {
-        assert.fail(
-          `not seen: ${what}; the page shows: ${await page.$eval("body", (body) => body.innerText)}`,
-        );
+        const shown = await page.$eval("body", (body) => body.innerText);
+        assert.fail(`not seen: ${what}; the page shows: ${shown}`);
       }
     },
     async close() {

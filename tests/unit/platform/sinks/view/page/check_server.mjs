@@ -4,8 +4,8 @@ import { request } from "node:http";
 
 import WebSocket from "ws";
 
-// The status is 0 if the server disconnects without an answer, or before its answer is read: it does
-// so on a request with a body, which it does not read.
+// The status is 0 if the server disconnects without an answer, or before its answer is read: it
+// does so on a request with a body, which it does not read.
 const answer = (address, options) =>
   new Promise((resolve) => {
     const { hostname, port } = new URL(address);
@@ -24,13 +24,12 @@ const answer = (address, options) =>
     sent.end(options.body);
   });
 
-export const pageOf = async (address) => (await answer(address, { path: "/" })).body;
-
-// Anything but GET / is refused, and the page may load nothing from elsewhere. Returns the number of
-// refusals.
-export async function checkServer(address) {
+// GET / returns the page, which may load nothing from elsewhere; anything else is refused. Returns
+// the number of refusals.
+export async function checkServer(address, html) {
   const page = await answer(address, { path: "/" });
   assert.equal(page.status, 200);
+  assert.ok(page.body === html, "the page is the one that was bundled");
   assert.match(page.headers["content-type"], /^text\/html/);
   const policy = page.headers["content-security-policy"];
   assert.match(policy, /^default-src 'none'; script-src 'sha256-/);

@@ -16,11 +16,13 @@ geometry_msgs/Point: float64 x; float64 y; float64 z
 geometry_msgs/Quaternion: float64 x; float64 y; float64 z; float64 w
 geometry_msgs/Pose: geometry_msgs/Point position; geometry_msgs/Quaternion orientation
 geometry_msgs/PoseWithCovariance: geometry_msgs/Pose pose; float64[36] covariance
-geometry_msgs/PoseWithCovarianceStamped: std_msgs/Header header; geometry_msgs/PoseWithCovariance pose
+geometry_msgs/PoseWithCovarianceStamped: std_msgs/Header header;
+ geometry_msgs/PoseWithCovariance pose
 sensor_msgs/JointState: std_msgs/Header header; string[] name; float64[] position
 sensor_msgs/Image: std_msgs/Header header; uint32 height; uint32 width; string encoding;
  uint8 is_bigendian; uint32 step; uint8[] data
-glint_msgs/Explanation: std_msgs/Header header; string tool; string state; string reason; string text
+glint_msgs/Explanation: std_msgs/Header header; string tool; string state; string reason;
+ string text
 glint_msgs/PixelRectangle: uint16 x; uint16 y; uint16 width; uint16 height; uint8[] reflectivity;
  uint8[] depth
 glint_msgs/Region: float32 x_px; float32 y_px; uint32 area_px; uint32 peak;
