@@ -20,6 +20,13 @@ def read_tum(path):
     return [(row[1:4], row[4:8]) for row in rows]
 
 
+def with_poses(packets, heads):
+    """The packets with the headset's poses."""
+    assert len(packets) == len(heads), (len(packets), len(heads))
+    return [dataclasses.replace(p, pose=struct.pack("<16f", *formats.row_vectors(formats.rig_pose(h))))
+            for p, h in zip(packets, heads)]
+
+
 def make(glint, work, seconds, camera=""):
     """(packets, truth) of a simulated pen; `truth` by frame: (tip, quaternion x y z w)."""
     cell, out = work / "scene.toml", work / "scene"
@@ -27,10 +34,9 @@ def make(glint, work, seconds, camera=""):
     subprocess.run([glint, "simulate", "--config", cell, "--out", out, "--frame-files", "1"],
                    check=True, stdout=subprocess.DEVNULL)
     head, truth = read_tum(out / "localised_head.tum"), read_tum(out / "truth_tool.tum")
-    packets = hl2ss_server.read_folder(out)
-    assert len(packets) == len(head) == len(truth), (len(packets), len(head), len(truth))
-    return [dataclasses.replace(p, pose=struct.pack("<16f", *formats.row_vectors(formats.rig_pose(h))))
-            for p, h in zip(packets, head)], truth
+    packets = with_poses(hl2ss_server.read_folder(out), head)
+    assert len(packets) == len(truth), (len(packets), len(truth))
+    return packets, truth
 
 
 def truth_at(truth, seconds):
