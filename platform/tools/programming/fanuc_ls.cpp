@@ -40,8 +40,17 @@ std::string number_text(const char* name, double number, int digits, const char*
   return std::string(name) + " = " + fixed_text(number, digits) + ' ' + unit;
 }
 
-std::string position_text(const RobotProgram& program, std::size_t number) {
-  const Pose& pose = program.moves[number - 1].pose;
+// Positions in the order of their numbers: a circular move has two.
+std::vector<Pose> positions_of(const RobotProgram& program) {
+  std::vector<Pose> positions;
+  for (const RobotMove& move : program.moves) {
+    if (move.via) positions.push_back(*move.via);
+    positions.push_back(move.pose);
+  }
+  return positions;
+}
+
+std::string position_text(const RobotProgram& program, const Pose& pose, std::size_t number) {
   const EulerAngles angles = euler_angles(pose.rotation);
   const auto mm = [&](const char* name, int i) {
     return number_text(name, 1e3 * pose.translation[i], 4, "mm");
@@ -66,10 +75,13 @@ std::vector<std::string> instructions(const RobotProgram& program) {
   remark("Acceleration: the controller's.");
   lines.push_back("  UFRAME_NUM=" + std::to_string(program.user_frame));
   lines.push_back("  UTOOL_NUM=" + std::to_string(program.tool_frame));
-  for (std::size_t i = 0; i < program.moves.size(); ++i) {
-    const RobotMove& move = program.moves[i];
+  std::size_t position = 0;
+  for (const RobotMove& move : program.moves) {
     remark(move.comment);
-    lines.push_back("L P[" + std::to_string(i + 1) + "] " +
+    // The second line of a circular move has no number.
+    const std::string via =
+        move.via ? "C P[" + std::to_string(++position) + "]    \n    :  " : "L ";
+    lines.push_back(via + "P[" + std::to_string(++position) + "] " +
                     std::to_string(whole_mm(move.speed_m_s)) + "mm/sec " + corner(move.blend_m));
   }
   return lines;
@@ -81,9 +93,10 @@ std::string fanuc_ls(const RobotProgram& program) {
   check_name(program.name, {"ls", 36, k_fanuc_words});
   check_number(program.user_frame, 0, 9, "ls", "user frame");
   check_number(program.tool_frame, 1, 10, "ls", "tool frame");
-  if (program.moves.size() > k_fanuc_positions_max) {
-    throw InputError("ls: " + std::to_string(program.moves.size()) +
-                     " positions; expected at most " + std::to_string(k_fanuc_positions_max) +
+  const std::vector<Pose> positions = positions_of(program);
+  if (positions.size() > k_fanuc_positions_max) {
+    throw InputError("ls: " + std::to_string(positions.size()) + " positions; expected at most " +
+                     std::to_string(k_fanuc_positions_max) +
                      " in one program; set a wider --spacing");
   }
   for (const RobotMove& move : program.moves) {
@@ -104,7 +117,8 @@ std::string fanuc_ls(const RobotProgram& program) {
             " ;\n";
   }
   text += "/POS\n";
-  for (std::size_t i = 1; i <= program.moves.size(); ++i) text += position_text(program, i);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    text += position_text(program, positions[i], i + 1);
   return text + "/END\n";
 }
 

@@ -56,7 +56,8 @@ std::string krl(const RobotProgram& program) {
       blend_m = move.blend_m;
       text += "$APO.CDIS=" + fixed_text(1e3 * blend_m, 3) + '\n';
     }
-    text += "LIN " + aggregate(move.pose) + (move.blend_m > 0 ? " C_DIS\n" : "\n");
+    text += (move.via ? "CIRC " + aggregate(*move.via) + ',' : "LIN ") + aggregate(move.pose) +
+            (move.blend_m > 0 ? " C_DIS\n" : "\n");
   }
   return text + "END\n";
 }

@@ -79,7 +79,9 @@ std::string rapid(const RobotProgram& program) {
     constant("zonedata", "zone" + zones.number_of(blend_m), zone_data(blend_m));
   }
   for (std::size_t i = 0; i < program.moves.size(); ++i) {
-    constant("robtarget", "target" + std::to_string(i + 1), target(program.moves[i].pose));
+    const RobotMove& move = program.moves[i];
+    if (move.via) constant("robtarget", "via" + std::to_string(i + 1), target(*move.via));
+    constant("robtarget", "target" + std::to_string(i + 1), target(move.pose));
   }
   const std::string limit = fixed_text(program.acceleration_m_s2, 6);
   text += "  PROC run_" + program.name +
@@ -90,8 +92,8 @@ std::string rapid(const RobotProgram& program) {
   for (std::size_t i = 0; i < program.moves.size(); ++i) {
     const RobotMove& move = program.moves[i];
     if (!move.comment.empty()) text += "    ! " + move.comment + '\n';
-    text += "    MoveL target" + std::to_string(i + 1) + ",speed" +
-            speeds.number_of(move.speed_m_s) + ',' +
+    text += (move.via ? "    MoveC via" + std::to_string(i + 1) + ',' : "    MoveL ") + "target" +
+            std::to_string(i + 1) + ",speed" + speeds.number_of(move.speed_m_s) + ',' +
             (move.blend_m > 0 ? "zone" + zones.number_of(move.blend_m) : "fine") + frames;
   }
   return text + "    PathAccLim FALSE,FALSE;\n    ConfL \\On;\n  ENDPROC\nENDMODULE\n";

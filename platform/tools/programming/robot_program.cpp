@@ -84,15 +84,16 @@ RobotProgram robot_program(const DrawnPath& path, const ProgramSettings& setting
     const bool stroke = element.kind == PathKind::stroke;
     ++number;
     for (const UncertainPose& point : element.points) {
-      const bool first = &point == &element.points.front();
-      const bool last = &point == &element.points.back();
       check_program(point.pose.translation.allFinite() && point.pose.rotation.coeffs().allFinite(),
                     "element " + std::to_string(number) + ": a pose that is not finite");
+    }
+    const std::vector<StrokeMove> moves = stroke_moves(element.points, settings.shapes);
+    for (const StrokeMove& move : moves) {
+      const bool first = &move == &moves.front();
+      const bool last = &move == &moves.back();
       const bool along = stroke && !first;
-      program.moves.push_back({{point.pose.rotation.normalized(), point.pose.translation},
-                               along ? MoveKind::along_stroke : MoveKind::travel,
-                               along ? settings.stroke_m_s : settings.travel_m_s,
-                               0,
+      program.moves.push_back({move.pose, along ? MoveKind::along_stroke : MoveKind::travel,
+                               move.via, along ? settings.stroke_m_s : settings.travel_m_s, 0,
                                first ? comment_of(element, number) : ""});
       stops.push_back(stroke && (first || last));
     }

@@ -1,12 +1,14 @@
-// Intermediate form of a robot program: linear moves with speed and blend radius. Each
+// Intermediate form of a robot program: linear and circular moves with speed and blend radius. Each
 // post-processor formats it in its dialect and adds nothing to the motion.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/tools/programming/path.hpp"
+#include "platform/tools/programming/stroke_segments.hpp"
 
 namespace glint {
 
@@ -22,6 +24,9 @@ struct ProgramSettings {
       "NOT CHECKED: reachability, joint limits, singularities, collisions."};
   int user_frame = 0;  // the controller's number of the path's frame; 0: its base
   int tool_frame = 1;  // the controller's number of the tip's frame
+  // Lines and arcs of strokes become one move each, or two for more than half a circle; empty: a
+  // move to each point.
+  std::optional<SegmentSettings> shapes{};
 };
 
 enum class MoveKind : std::uint8_t { travel, along_stroke };
@@ -29,6 +34,7 @@ enum class MoveKind : std::uint8_t { travel, along_stroke };
 struct RobotMove {
   Pose pose;  // T_robot_tip, unit quaternion
   MoveKind kind = MoveKind::travel;
+  std::optional<Pose> via;  // a circular move through it; else a linear one
   double speed_m_s = 0;
   double blend_m = 0;   // whole micrometres; 0: the robot stops
   std::string comment;  // before the move; empty: none

@@ -34,7 +34,11 @@ std::string ur_script(const RobotProgram& program) {
           "():\n";
   for (const RobotMove& move : program.moves) {
     if (!move.comment.empty()) text += "  # " + move.comment + '\n';
-    text += std::string("  ") + (move.kind == MoveKind::along_stroke ? "movep(" : "movel(") +
+    const bool along = move.kind == MoveKind::along_stroke;
+    text += std::string("  ") +
+            (move.via ? "movec(" + pose_text(*move.via) + ", "
+             : along  ? "movep("
+                      : "movel(") +
             pose_text(move.pose) + ", a=" + fixed(program.acceleration_m_s2) +
             ", v=" + fixed(move.speed_m_s) + ", r=" + fixed(move.blend_m) + ")\n";
   }

@@ -1,7 +1,8 @@
 // KUKA KRL. Syntax: KUKA System Software 8.3, Operating and Programming Instructions for System
 // Integrators: DEF .. END, names of at most 24 characters, comments from ';' to the line's end, one
-// statement a line, aggregates {X 1,Y 2,...}, LIN target [C_DIS], $VEL.CP [m/s], $ACC.CP [m/s^2],
-// $APO.CDIS [mm]. A, B, C turn about the moving axes z, y, x. A LIN statement has no S and T.
+// statement a line, aggregates {X 1,Y 2,...}, LIN target [C_DIS], CIRC via,target [C_DIS], $VEL.CP
+// [m/s], $ACC.CP [m/s^2], $APO.CDIS [mm]. A, B, C turn about the moving axes z, y, x. A LIN
+// statement has no S and T.
 #include "tests/unit/platform/tools/programming/program_reader.hpp"
 
 namespace glint::test {
@@ -73,9 +74,16 @@ ReadProgram read_krl(const std::string& text) {
     } else if (in.accept("PTP")) {
       in.expect("$AXIS_ACT");
       started = true;
-    } else if (in.accept("LIN")) {
+    } else if (const bool circular = in.accept("CIRC"); circular || in.accept("LIN")) {
       if (!started) in.fail("PTP as the first motion");
+      ReadMove via;
+      if (circular) {
+        via = krl_reader::target(in);
+        in.expect(",");
+      }
       ReadMove move = krl_reader::target(in);
+      move.circular = circular;
+      if (circular) move.via_m = via.position_m;
       move.speed_m_s = speed;
       move.blend_m = in.accept("C_DIS") ? zone_mm / 1000 : 0;
       program.moves.push_back(move);

@@ -1,7 +1,8 @@
 // FANUC LS. Syntax: FANUC Robotics, SYSTEM R-30iA and R-30iB HandlingTool Setup and Operations
 // Manual: sections /PROG, /ATTR, /MN, /POS, /END; numbered lines that end with ';'; remarks '!' of
-// at most 32 characters; L P[i] speed FINE or CRn (corner region, 0 to 1000 mm); positions with UF,
-// UT, CONFIG. W, P, R turn about the fixed axes x, y, z, in this order.
+// at most 32 characters; L P[i] speed FINE or CRn, C P[i] with P[j] speed on a line without number
+// (corner region, 0 to 1000 mm); positions with UF, UT, CONFIG. W, P, R turn about the fixed axes
+// x, y, z, in this order.
 #include <map>
 
 #include "tests/unit/platform/tools/programming/program_reader.hpp"
@@ -88,6 +89,7 @@ Position position(Scanner& in) {
 }
 
 struct Instruction {
+  int via = 0;  // of a circular move
   int position = 0;
   double speed_m_s = 0, blend_m = 0;
 };
@@ -143,8 +145,16 @@ ReadProgram read_ls(const std::string& text) {
         in.expect("=");
         program.tool_frame = in.whole();
       } else {
-        in.expect("L");
+        int via = 0;
+        if (in.accept("C")) {
+          for (const char* token : {"P", "["}) in.expect(token);
+          via = in.whole();
+          for (const char* token : {"]", "\n", ":"}) in.expect(token);
+        } else {
+          in.expect("L");
+        }
         motions.push_back(ls_reader::motion(in));
+        motions.back().via = via;
       }
       in.expect(";");
     }
@@ -171,6 +181,12 @@ ReadProgram read_ls(const std::string& text) {
     ReadMove move = at->second.move;
     move.speed_m_s = one.speed_m_s;
     move.blend_m = one.blend_m;
+    if (one.via != 0) {
+      const auto through = positions.find(one.via);
+      if (through == positions.end()) in.fail("P[" + std::to_string(one.via) + "]");
+      move.circular = true;
+      move.via_m = through->second.move.position_m;
+    }
     program.moves.push_back(move);
   }
   return program;

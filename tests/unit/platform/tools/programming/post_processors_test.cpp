@@ -116,6 +116,43 @@ TEST(PostProcessors, AreReadBackTo1MicrometreAnd1MillidegreeOn30Strokes) {
   }
 }
 
+// Strokes of a line and an arc: the circular moves of each language are those of the program.
+TEST(PostProcessors, CircularMovesAreReadBack) {
+  test::Random random(31);
+  DrawnPath path;
+  for (int stroke = 0; stroke < 10; ++stroke) {
+    PathElement element{PathKind::stroke, {}};
+    const Pose frame{random.rotation(), random.in_box(1)};
+    const Quaternion grip = random.rotation();
+    for (int i = 0; i < 80; ++i) {
+      const double angle = std::max(0, i - 30) * 0.04;
+      const Vector3 at(0.05 * std::sin(angle), 0.05 * (1 - std::cos(angle)),
+                       0.002 * std::min(0, i - 30));
+      element.points.push_back({Time{i}, {grip, frame * at}, Matrix6::Identity() * 1e-10});
+    }
+    path.push_back(element);
+  }
+  ProgramSettings settings = sample_settings();
+  settings.shapes.emplace();
+  const RobotProgram program = robot_program(path, settings);
+  EXPECT_LT(program.moves.size(), 60u);
+  for (const Dialect& dialect : k_dialects) {
+    SCOPED_TRACE(dialect.name);
+    const test::ReadProgram read = dialect.read(path_text({path}, settings, dialect.format));
+    ASSERT_EQ(read.moves.size(), program.moves.size());
+    int circular = 0;
+    for (std::size_t i = 0; i < read.moves.size(); ++i) {
+      const RobotMove& move = program.moves[i];
+      EXPECT_LT((read.moves[i].position_m - move.pose.translation).norm(), 1e-6);
+      ASSERT_EQ(read.moves[i].circular, move.via.has_value());
+      if (!move.via) continue;
+      ++circular;
+      EXPECT_LT((read.moves[i].via_m - move.via->translation).norm(), 1e-6);
+    }
+    EXPECT_GE(circular, 10);
+  }
+}
+
 TEST(PostProcessors, StateNameFramesAccelerationAndWhatIsNotChecked) {
   const DrawnPath path = thirty_strokes(5);
   for (const Dialect& dialect : k_dialects) {

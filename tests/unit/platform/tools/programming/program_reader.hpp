@@ -20,6 +20,8 @@ struct ReadMove {
   Eigen::Matrix3d rotation;
   double speed_m_s = 0;
   double blend_m = 0;
+  bool circular = false;
+  Eigen::Vector3d via_m = Eigen::Vector3d::Zero();  // of a circular move
   bool along_stroke = false;  // URScript only: the others have one linear move
 };
 

@@ -1,7 +1,8 @@
 // ABB RAPID. Syntax: ABB, RAPID Kernel (modules, identifiers of at most 32 characters, comments
 // from '!' to the line's end) and Technical reference manual, RAPID Instructions, Functions and
 // Data types: robtarget [[x,y,z] mm,[q1..q4] = w,x,y,z,confdata,extjoint], speeddata [v_tcp mm/s,
-// v_ori, v_leax, v_reax], zonedata [finep,pzone_tcp mm,...], MoveL, PathAccLim, ConfL.
+// v_ori, v_leax, v_reax], zonedata [finep,pzone_tcp mm,...], MoveL to, MoveC through,to,
+// PathAccLim, ConfL.
 #include <array>
 #include <map>
 #include <numeric>
@@ -99,8 +100,15 @@ Value found(const std::map<std::string, Value>& values, const std::string& name,
   return at->second;
 }
 
-void move_linear(Scanner& in, Module& module) {
+void read_move(Scanner& in, bool circular, Module& module) {
+  ReadMove via;
+  if (circular) {
+    via = found(module.targets, identifier(in), in);
+    in.expect(",");
+  }
   ReadMove move = found(module.targets, identifier(in), in);
+  move.circular = circular;
+  if (circular) move.via_m = via.position_m;
   in.expect(",");
   move.speed_m_s = found(module.speeds, identifier(in), in);
   in.expect(",");
@@ -149,8 +157,9 @@ ReadProgram read_rapid(const std::string& text) {
   in.expect(")");
   while (!in.accept("ENDPROC")) {
     if (comment()) continue;
-    if (in.accept("MoveL")) {
-      rapid_reader::move_linear(in, module);
+    const bool circular = in.accept("MoveC");
+    if (circular || in.accept("MoveL")) {
+      rapid_reader::read_move(in, circular, module);
     } else if (in.accept("PathAccLim")) {
       rapid_reader::limit_acceleration(in, module.program);
     } else {

@@ -1,6 +1,6 @@
 // URScript. Syntax: Universal Robots, The URScript Programming Language: def NAME(): .. end,
-// comments from '#' to the line's end, movel and movep with pose p[x,y,z,rx,ry,rz] (m, rotation
-// vector), a [m/s^2], v [m/s], r [m].
+// comments from '#' to the line's end, movel and movep with a pose, movec with two poses (through,
+// to): p[x,y,z,rx,ry,rz] (m, rotation vector), a [m/s^2], v [m/s], r [m].
 #include "tests/unit/platform/tools/programming/program_reader.hpp"
 
 namespace glint::test {
@@ -22,10 +22,10 @@ double argument(Scanner& in, std::string_view name) {
   return in.number();
 }
 
-ReadMove move(Scanner& in, ReadProgram& program) {
+ReadMove pose(Scanner& in) {
   ReadMove read;
   double value[6] = {};
-  for (const char* token : {"(", "p", "["}) in.expect(token);
+  for (const char* token : {"p", "["}) in.expect(token);
   for (int i = 0; i < 6; ++i) {
     if (i > 0) in.expect(",");
     value[i] = in.number();
@@ -33,6 +33,19 @@ ReadMove move(Scanner& in, ReadProgram& program) {
   in.expect("]");
   read.position_m = {value[0], value[1], value[2]};
   read.rotation = rotation_by({value[3], value[4], value[5]});
+  return read;
+}
+
+ReadMove move(Scanner& in, bool circular, ReadProgram& program) {
+  in.expect("(");
+  ReadMove via;
+  if (circular) {
+    via = pose(in);
+    in.expect(",");
+  }
+  ReadMove read = pose(in);
+  read.circular = circular;
+  if (circular) read.via_m = via.position_m;
   program.acceleration_m_s2 = argument(in, "a");
   read.speed_m_s = argument(in, "v");
   read.blend_m = argument(in, "r");
@@ -58,10 +71,10 @@ ReadProgram read_urscript(const std::string& text) {
   for (const char* token : {"(", ")", ":", "\n"}) in.expect(token);
   while (!in.accept("end")) {
     if (comment()) continue;
-    const bool along = in.accept("movep");
-    if (!along) in.expect("movel");
-    program.moves.push_back(urscript_reader::move(in, program));
-    program.moves.back().along_stroke = along;
+    const bool circular = in.accept("movec"), along = in.accept("movep");
+    if (!circular && !along) in.expect("movel");
+    program.moves.push_back(urscript_reader::move(in, circular, program));
+    program.moves.back().along_stroke = along || circular;
     in.expect("\n");
   }
   in.expect("\n");
