@@ -49,6 +49,18 @@ class EditText {
     if (!(v.norm() > 1e-9)) fail("a direction of length 0", "another one");
     return v.normalized();
   }
+  std::size_t number_from_1(const char* what, std::size_t most) {
+    const std::string text = word(what);
+    std::size_t number = 0;
+    const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool right =
+        error == std::errc() && next == text.data() + text.size() && number >= 1 && number <= most;
+    if (!right) {
+      fail("found \"" + printable(text) + "\"",
+           most == 0 ? "--planes" : "a number from 1 to " + std::to_string(most));
+    }
+    return number;
+  }
   double length_m() {
     const std::string text = word("length");
     double number = 0;
@@ -119,8 +131,8 @@ void move_along_tool(UncertainPose& point, double length_m) {
   point.covariance = (moved * point.covariance * moved.transpose()).eval();
 }
 
-void offset(PathElement& element, const std::string& direction, double length_m,
-            const EditText& text) {
+void shift(PathElement& element, const std::string& direction, double length_m,
+           const EditText& text) {
   if (direction == "tool") {
     for (UncertainPose& point : element.points) move_along_tool(point, length_m);
     return;
@@ -142,13 +154,44 @@ void mirror(UncertainPose& point, const Vector3& on_plane, const Vector3& normal
   point.covariance = (errors * point.covariance * errors.transpose()).eval();
 }
 
-DrawnPath edited_once(DrawnPath path, const std::string& edit) {
+void project(UncertainPose& point, const MappedPlane& plane) {
+  const Matrix3 onto = Matrix3::Identity() - plane.normal * plane.normal.transpose();
+  point.pose.translation = plane.point + onto * (point.pose.translation - plane.point);
+  Matrix6 errors = Matrix6::Identity();
+  errors.topLeftCorner<3, 3>() = onto;
+  point.covariance = (errors * point.covariance * errors.transpose()).eval();
+  point.covariance.topLeftCorner<3, 3>() +=
+      plane.sigma_m * plane.sigma_m * plane.normal * plane.normal.transpose();
+}
+
+// Waypoints at a distance from the element's first and last point.
+void add_approach(DrawnPath& path, const std::string& name, const std::string& direction,
+                  double length_m, const EditText& text) {
+  const std::size_t at = index_of(path, name, text);
+  PathElement moved = path[at];
+  shift(moved, direction, length_m, text);
+  const PathElement before{PathKind::waypoint, {moved.points.front()}, name + ".approach"};
+  const PathElement after{PathKind::waypoint, {moved.points.back()}, name + ".retract"};
+  for (const PathElement& element : path) {
+    if (element.name == before.name || element.name == after.name)
+      text.fail("the name \"" + element.name + "\" exists", "an element without approach");
+  }
+  if (!is_stroke_name(before.name))
+    text.fail("the name \"" + before.name + "\"", "at most 64 characters");
+  const auto place = path.begin() + static_cast<std::ptrdiff_t>(at);
+  path.insert(path.insert(place, before) + 2, after);
+}
+
+DrawnPath edited_once(DrawnPath path, const std::string& edit,
+                      const std::vector<MappedPlane>& planes) {
   EditText text(edit);
   const std::string verb = text.word("verb");
   const bool known = verb == "delete" || verb == "rename" || verb == "replace" ||
-                     verb == "offset" || verb == "mirror";
+                     verb == "offset" || verb == "mirror" || verb == "project" ||
+                     verb == "approach";
   if (!known)
-    text.fail("found \"" + printable(verb) + "\"", "delete, rename, replace, offset or mirror");
+    text.fail("found \"" + printable(verb) + "\"",
+              "delete, rename, replace, offset, mirror, project or approach");
   const std::string name = text.word("name");
   if (verb == "delete") {
     text.end();
@@ -177,7 +220,17 @@ DrawnPath edited_once(DrawnPath path, const std::string& edit) {
     const std::string direction = text.word("direction");
     const double length = text.length_m();
     text.end();
-    for (const std::size_t i : selected(path, name, text)) offset(path[i], direction, length, text);
+    for (const std::size_t i : selected(path, name, text)) shift(path[i], direction, length, text);
+  } else if (verb == "approach") {
+    const std::string direction = text.word("direction");
+    const double length = text.length_m();
+    text.end();
+    add_approach(path, name, direction, length, text);
+  } else if (verb == "project") {
+    const MappedPlane& plane = planes[text.number_from_1("number of a plane", planes.size()) - 1];
+    text.end();
+    for (const std::size_t i : selected(path, name, text))
+      for (UncertainPose& point : path[i].points) project(point, plane);
   } else {
     const Vector3 on_plane = text.vector(text.word("point"));
     const Vector3 normal = text.direction(text.word("normal"));
@@ -210,12 +263,13 @@ DrawnPath named(DrawnPath path) {
   return path;
 }
 
-DrawnPath edited(DrawnPath path, const std::vector<std::string>& edits) {
+DrawnPath edited(DrawnPath path, const std::vector<std::string>& edits,
+                 const std::vector<MappedPlane>& planes) {
   if (edits.size() > k_stroke_edits_max) {
     throw InputError("--edit: " + std::to_string(edits.size()) + " edits; expected at most " +
                      std::to_string(k_stroke_edits_max));
   }
-  for (const std::string& edit : edits) path = edited_once(std::move(path), edit);
+  for (const std::string& edit : edits) path = edited_once(std::move(path), edit, planes);
   return path;
 }
 

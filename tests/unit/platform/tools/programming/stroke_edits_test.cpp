@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <numbers>
 
 #include "kernels/motion/interpolate.hpp"
@@ -171,6 +172,50 @@ TEST(StrokeEdits, MirrorTwiceIsTheSame) {
     EXPECT_LT((twice[2].points[p].pose.translation - before.translation).norm(), 1e-15);
     EXPECT_LT((twice[2].points[p].covariance - path[2].points[p].covariance).norm(), 1e-15);
   }
+}
+
+// On the plane of the map's figures, which the robot sees turned; covariance by its definition.
+TEST(StrokeEdits, ProjectOntoAPlaneOfTheMap) {
+  const std::string file = path_beside_test("planes_of_a_map.json");
+  std::ofstream(file) << "{\"planes\": [{\"normal\": [0, 0, 1], \"offset_m\": 0.5, "
+                         "\"rms_mm\": 1, \"points\": 9}, {\"normal\": [0.6, 0, 0.8], "
+                         "\"offset_m\": 0.25, \"rms_mm\": 2, \"points\": 9}]}";
+  const Pose T_robot_map{Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 2, 2) / 3)), {0.1, 0.2, 0.3}};
+  const auto planes = read_mapped_planes(file, T_robot_map);
+  const DrawnPath path = sample_of_edits();
+  const DrawnPath out = edited(path, {"project a 2"}, planes);
+  const Vector3 normal = T_robot_map.rotation * Vector3(0.6, 0, 0.8);
+  for (std::size_t p = 0; p < path[0].points.size(); ++p) {
+    const UncertainPose &before = path[0].points[p], &after = out[0].points[p];
+    const Vector3 in_map = T_robot_map.inverse() * after.pose.translation;
+    EXPECT_NEAR(0.6 * in_map.x() + 0.8 * in_map.z(), 0.25, 1e-12);
+    EXPECT_LT((after.pose.translation - before.pose.translation).cross(normal).norm(), 1e-12);
+    const Matrix3 position = after.covariance.topLeftCorner<3, 3>();
+    EXPECT_NEAR(normal.dot(position * normal), 4e-6, 1e-15);
+    const Vector3 within = normal.unitOrthogonal();
+    EXPECT_NEAR(within.dot(position * within),
+                within.dot(before.covariance.topLeftCorner<3, 3>() * within), 1e-15);
+  }
+  EXPECT_THROW((void)edited(path, {"project a 3"}, planes), InputError);
+  EXPECT_THROW((void)edited(path, {"project a 1"}), InputError);
+  std::ofstream(file) << "{\"planes\": [{\"normal\": [0, 0, 2]}]}";
+  EXPECT_THROW((void)read_mapped_planes(file, {}), InputError);
+  EXPECT_THROW((void)read_mapped_planes("absent.json", {}), InputError);
+}
+
+TEST(StrokeEdits, ApproachAddsWaypointsAtBothEnds) {
+  const DrawnPath path = sample_of_edits();
+  const DrawnPath out = edited(path, {"approach b tool 5cm"});
+  ASSERT_EQ(names_of(out), "a b.approach b b.retract c w ");
+  const Pose &first = path[1].points.front().pose, &last = path[1].points.back().pose;
+  EXPECT_LT((first.inverse() * out[1].points[0].pose.translation - Vector3(0, 0, 0.05)).norm(),
+            1e-15);
+  EXPECT_LT((last.inverse() * out[3].points[0].pose.translation - Vector3(0, 0, 0.05)).norm(),
+            1e-15);
+  EXPECT_EQ(out[1].kind, PathKind::waypoint);
+  EXPECT_EQ(out[2].points[0].pose.translation, first.translation);
+  EXPECT_NE(error_of({"approach b tool 5cm", "approach b tool 5cm"}).find("exists"),
+            std::string::npos);
 }
 
 TEST(StrokeEdits, RefuseUnknownWordsNamesAndNumbers) {
