@@ -3,6 +3,7 @@ run that tracked it: error, coverage and age at the output, and each frame's pos
 import csv
 import dataclasses
 import math
+import mmap
 import statistics
 import struct
 import subprocess
@@ -77,10 +78,10 @@ def mahalanobis2(error, m):
 
 def session_begin_ns(recording):
     """Unix time of session time 0, as the recording's metadata state it."""
-    data = recording.read_bytes()
-    at = data.index(b"unix_offset_ns") + len(b"unix_offset_ns")
-    size, = struct.unpack_from("<I", data, at)
-    return int(data[at + 4:at + 4 + size])
+    with open(recording, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        at = data.find(b"unix_offset_ns") + len(b"unix_offset_ns")
+        size, = struct.unpack_from("<I", data, at)
+        return int(data[at + 4:at + 4 + size])
 
 
 @dataclasses.dataclass
