@@ -28,9 +28,9 @@ std::optional<Time> ClockMap::map(Time stamp, Time arrival) noexcept {
   const double y = (difference - base_).seconds();
   if (std::abs(y - (offset_s_ + slope_ * (x - mean_s_))) > k_step.seconds()) {
     const Duration apart = difference - refused_difference_;
-    const bool agrees = refused_in_row_ > 0 && apart <= k_step && Duration{} - apart <= k_step;
+    const bool agrees = refused_in_row_ > 0 && apart <= k_agree && Duration{} - apart <= k_agree;
     refused_in_row_ = agrees ? refused_in_row_ + 1 : 1;
-    refused_difference_ = difference;
+    if (!agrees) refused_difference_ = difference;
     if (refused_in_row_ <= k_agreeing) {
       ++refused_;
       return std::nullopt;

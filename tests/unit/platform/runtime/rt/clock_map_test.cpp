@@ -119,6 +119,26 @@ TEST(ClockMap, RefusesAStepAndThenFollowsTheNewClock) {
 }
 
 // Single time stamps that are off by a second are rejected and do not affect the others.
+// 45 frames wait in the network and arrive within 5 ms.
+TEST(ClockMap, KeepsItsClockWhenWaitingStampsArriveAtOnce) {
+  ClockMap map(k_delay);
+  const Time released{k_start_ns + 11'000'000'000};
+  for (int i = 0; i < 45 * 20; ++i) {
+    const Time stamp{1'000'000'000'000 + i * 22'222'222LL};
+    const Time exposed{k_start_ns + i * 22'222'222LL};
+    const bool waits = i >= 450 && exposed + k_delay < released;
+    const Time arrival = waits ? released + microseconds(100 * (i - 450)) : exposed + k_delay;
+    const auto mapped = map.map(stamp, arrival);
+    if (mapped) {
+      EXPECT_NEAR((*mapped - exposed).seconds() * 1e3, 0, 1) << "frame " << i;
+    } else {
+      EXPECT_LT(i, 500);
+    }
+  }
+  EXPECT_EQ(map.restarts(), 0u);
+  EXPECT_GT(map.refused(), 20u);
+}
+
 TEST(ClockMap, RefusesSingleStampsWithoutAStep) {
   ClockMap map(k_delay);
   Stream stream;
