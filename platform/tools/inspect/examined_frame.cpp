@@ -16,19 +16,26 @@ std::uint16_t pixel_at(const Frame& frame, int x, int y) {
                                       : std::uint16_t{frame.reflectivity_8.row(y)[x]};
 }
 
-// Finds the brightest pixel and counts those above the threshold.
+// Finds the brightest pixel and the share of those above the threshold. A frame read from a
+// recording does not state which pixels were recorded: at most the box of those that are not 0.
 void measure_brightness(const Frame& frame, std::size_t searched_px, ExaminedFrame& examined) {
   std::size_t bright = 0;
+  Roi box{frame.width(), frame.height(), 0, 0};
   for (int y = 0; y < frame.height(); ++y) {
     for (int x = 0; x < frame.width(); ++x) {
       const std::uint16_t pixel = pixel_at(frame, x, y);
+      if (pixel == 0) continue;
+      box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1),
+             std::max(box.y1, y + 1)};
       examined.brightest = std::max(examined.brightest, pixel);
       bright += pixel > examined.threshold ? 1 : 0;
     }
   }
-  if (searched_px > 0) {
-    examined.bright_share = static_cast<double>(bright) / static_cast<double>(searched_px);
-  }
+  if (bright == 0 || searched_px == 0) return;
+  const auto box_px =
+      static_cast<std::size_t>(box.x1 - box.x0) * static_cast<std::size_t>(box.y1 - box.y0);
+  examined.bright_share =
+      static_cast<double>(bright) / static_cast<double>(std::min(searched_px, box_px));
 }
 
 Roi box_of(const auto& box) { return {box.x0, box.y0, box.x1, box.y1}; }
@@ -91,8 +98,12 @@ void FrameExaminer::add_candidates(ExaminedFrame& examined) {
     region.marker = names[i];
     const bool has_depth =
         marker_of[i] != nullptr && (marker_of[i]->flags & k_marker_no_depth) == 0;
-    if (has_depth) region.range_m = marker_of[i]->surface_range_m;
-    if (!has_depth) region.reason = "no_depth";
+    if (has_depth) {
+      region.range_m = marker_of[i]->surface_range_m;
+      region.surface_m = marker_of[i]->ray * region.range_m;
+    } else {
+      region.reason = "no_depth";
+    }
     ++(has_depth ? examined.counts.candidates : examined.counts.no_depth);
     examined.counts.touching_edge += (blob.flags & k_blob_touches_edge) != 0 ? 1 : 0;
     examined.regions.push_back(std::move(region));

@@ -25,6 +25,7 @@ struct ExaminedRegion {
   std::string reason;  // too_small, too_large, low_contrast, blobs_full, no_depth; "": a candidate
   std::string marker;  // "pen/2", from 1; "": none
   double range_m = 0;  // 0: none
+  Vector3 surface_m = Vector3::Zero();  // of a candidate with a range: camera frame
 };
 
 // Numbers of regions; touching_edge counts candidates and regions that are too small.

@@ -124,7 +124,11 @@ Explanation Explainer::explanation(std::size_t tool) const {
   now.ever_measured = state.ever_measured;
   now.any_frame = any_frame_;
   now.frame_gap = state.newest.tick - arrival_;
-  now.frame_gap_max = std::max(k_frame_gap_max, cell_.camera.period * 3);
+  // If the newest frame gave the newest measurement, only the next frame is missing.
+  const bool only_next_is_missing = state.ever_measured && state.measured == arrival_ - frame_age_;
+  const Duration fresh{3 * cell_.camera.period.nanoseconds / 2};
+  now.frame_gap_max =
+      only_next_is_missing ? fresh : std::max(k_frame_gap_max, cell_.camera.period * 3);
   now.frame_age = frame_age_;
   now.lost_after = cell_.lost_after;
   now.frame_refused = refused_;

@@ -34,7 +34,7 @@ std::optional<Cause> cause_in_frames(const ExplainedSituation& now) {
   const char* check_source = "check that the source of the frames runs and is connected";
   if (!now.any_frame) return Cause{"no frame has arrived", check_source};
   if (now.frame_gap > now.frame_gap_max) {
-    return Cause{line_of("no frame has arrived for %.1f s", now.frame_gap.seconds()), check_source};
+    return Cause{line_of("no frame has arrived for %.2f s", now.frame_gap.seconds()), check_source};
   }
   if (is_overrun(now.reason)) {
     return Cause{"computing the frame missed its deadline",

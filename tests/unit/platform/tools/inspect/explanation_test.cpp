@@ -169,9 +169,10 @@ TEST(Explanation, OfNoFrameAtAll) {
 TEST(Explanation, OfASourceThatStopped) {
   ExplainedSituation now = lost();
   now.frame_gap = milliseconds(2300);
-  EXPECT_EQ(explain(now).text,
-            "Not tracked: no frame has arrived for 2.3 s. Check that the source of the frames runs "
-            "and is connected.");
+  EXPECT_EQ(
+      explain(now).text,
+      "Not tracked: no frame has arrived for 2.30 s. Check that the source of the frames runs "
+      "and is connected.");
 }
 
 TEST(Explanation, OfFramesThatArriveTooOld) {
