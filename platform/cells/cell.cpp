@@ -25,6 +25,8 @@ namespace {
 
 struct CellParser : CellFileReader {
   const NamedFile* named_by(TomlReader& root, const std::string& section);
+  void read_robot(const toml::table* table);
+  void read_robot_description(const std::string& path);
   void read_source(const toml::table* table);
   void read_simulator(const toml::table* table);
   void read_tools(TomlReader& root);
@@ -169,9 +171,10 @@ void read_sinks(TomlReader& root, Cell& cell) {
   }
 }
 
+constexpr std::size_t k_urdf_bytes_max = std::size_t{4} << 20;
 constexpr double k_robot_sigma_max_mm = 1000, k_robot_sigma_max_deg = 90;
 
-void read_robot(const toml::table* table, Cell& cell) {
+void CellParser::read_robot(const toml::table* table) {
   cell.robot_valid = table != nullptr;
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "robot.");
@@ -193,7 +196,17 @@ void read_robot(const toml::table* table, Cell& cell) {
                      ": robot.frame is \"reference\" without a reference; expected reference = "
                      "\"NAME\" at the top, a listed tool at rest");
   }
+  if (const std::string path = reader.text("urdf", ""); !path.empty()) read_robot_description(path);
   reader.done();
+}
+
+// Only viewers read it: the tracker has no model of the robot.
+void CellParser::read_robot_description(const std::string& path) {
+  const NamedFile& file = named_file(path, k_urdf_key);
+  if (file.text.size() <= k_urdf_bytes_max && file.text.find("<robot") != std::string::npos) return;
+  throw InputError(file.path + ": " + std::to_string(file.text.size()) +
+                   " bytes without a robot element, or too many; expected a URDF file of at most " +
+                   std::to_string(k_urdf_bytes_max) + " bytes");
 }
 
 void CellParser::read_tools(TomlReader& root) {
@@ -254,7 +267,7 @@ Cell cell_from_text(const std::string& text, const std::string& file,
       [&](const std::string& path, const std::string& key) { return parser.resolved(path, key); },
       cell);
   read_sinks(root, cell);
-  read_robot(root.table("robot"), cell);
+  parser.read_robot(root.table("robot"));
   check_tracked_robot(root.table("mapping"), cell);
   if (const NamedFile* named = parser.named_by(root, "motion")) cell.motion = motion_of(*named);
   if (const NamedFile* named = parser.named_by(root, "correction")) {

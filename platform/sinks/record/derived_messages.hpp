@@ -16,7 +16,7 @@ enum class Destination : std::uint8_t { file_and_observer, observer };
 class DerivedOutput {
  public:
   virtual ~DerivedOutput() = default;
-  // Returns the number for write().
+  // Returns the number for write(). The topic may be one of the recording's own.
   virtual std::uint16_t add_channel(std::string_view topic, std::string_view type,
                                     Destination to) = 0;
   // time: monotonic. cdr: with its encapsulation.

@@ -1,6 +1,8 @@
 #include "platform/sinks/record/recording_writer.hpp"
 
 #include <algorithm>
+#include <map>
+#include <vector>
 
 #include "platform/sinks/record/glint_messages.hpp"
 #include "platform/sinks/record/mcap_writer.hpp"
@@ -53,13 +55,21 @@ struct RecordingWriter::Body : DerivedOutput {
     const std::uint16_t number = mcap.add_channel(std::string(topic), std::string(type), schema,
                                                   {{"offered_qos_profiles", ""}});
     if (observer != nullptr) observer->add_channel(number, topic, type, schema);
+    numbers.emplace(topic, number);
     return number;
   }
   std::uint16_t add_channel(std::string_view topic, std::string_view type,
                             Destination to) override {
-    if (to == Destination::file_and_observer) return channel(topic, type);
-    const std::uint16_t number = next_observed_channel++;
-    if (observer != nullptr) observer->add_channel(number, topic, type, schema_text(type));
+    const auto recorded = numbers.find(std::string(topic));
+    if (to == Destination::file_and_observer) {
+      return recorded != numbers.end() ? recorded->second : channel(topic, type);
+    }
+    const auto number =
+        static_cast<std::uint16_t>(k_first_observed_channel + observed_channels.size());
+    observed_channels.push_back(recorded != numbers.end() ? recorded->second : number);
+    if (observer != nullptr && recorded == numbers.end()) {
+      observer->add_channel(number, topic, type, schema_text(type));
+    }
     return number;
   }
   void write(std::uint16_t to, Time time, std::span<const std::uint8_t> message) override {
@@ -69,6 +79,8 @@ struct RecordingWriter::Body : DerivedOutput {
       mcap.write({to, static_cast<std::uint32_t>(sequence++), log_time, log_time}, message);
       ++offered;
       note_failure();
+    } else {
+      to = observed_channels[to - std::size_t{k_first_observed_channel}];
     }
     if (observer != nullptr) observer->add_message(to, log_time, message);
   }
@@ -96,7 +108,8 @@ struct RecordingWriter::Body : DerivedOutput {
   McapWriter mcap;
   MessageObserver* observer;
   DerivedMessages* derived;
-  std::uint16_t next_observed_channel = k_first_observed_channel;
+  std::map<std::string, std::uint16_t> numbers;  // of the file's channels, by topic
+  std::vector<std::uint16_t> observed_channels;  // the observer's number of each of its own
   CdrWriter cdr;
   std::uint64_t sequence = 0;
   std::uint64_t offered = 0;  // messages, written or not
@@ -179,7 +192,7 @@ void RecordingWriter::Body::write_pose(const PoseSample& sample) {
   write(channels.pose, sample.tick);
   write_pose_with_covariance(cdr, stamp, sample);
   write(channels.pose_covariance, sample.tick);
-  write_transform(cdr, stamp, sample, channels.tip_frame);
+  write_transform(cdr, stamp, frame_name(sample.frame), channels.tip_frame, sample.pose);
   write(transform, sample.tick);
 }
 

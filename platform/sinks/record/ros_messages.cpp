@@ -50,13 +50,13 @@ void write_pose_with_covariance(CdrWriter& to, Time since_1970, const PoseSample
     for (int column = 0; column < 6; ++column) to.put(sample.covariance(row, column));
 }
 
-void write_transform(CdrWriter& to, Time since_1970, const PoseSample& sample,
-                     std::string_view child_frame) {
+void write_transform(CdrWriter& to, Time since_1970, std::string_view parent,
+                     std::string_view child, const Pose& T_parent_child) {
   to.begin();
   to.put_length(1);
-  put_header(to, since_1970, frame_name(sample.frame));
-  to.put(child_frame);
-  put_pose(to, sample.pose);  // a Transform has the same bytes as a Pose
+  put_header(to, since_1970, parent);
+  to.put(child);
+  put_pose(to, T_parent_child);  // a Transform has the same bytes as a Pose
 }
 
 void write_image(CdrWriter& to, Time since_1970, const ImageShape& shape,

@@ -26,8 +26,9 @@ void put_pose(CdrWriter& to, const Pose& pose);  // geometry_msgs/Pose
 // Pose of the tool's tip, predicted to the tick.
 void write_pose_stamped(CdrWriter& to, Time since_1970, const PoseSample& sample);
 void write_pose_with_covariance(CdrWriter& to, Time since_1970, const PoseSample& sample);
-void write_transform(CdrWriter& to, Time since_1970, const PoseSample& sample,
-                     std::string_view child_frame);
+// tf2_msgs/TFMessage of one transform.
+void write_transform(CdrWriter& to, Time since_1970, std::string_view parent,
+                     std::string_view child, const Pose& T_parent_child);
 
 // sensor_msgs/Image with rows without padding; encoding "mono8", "mono16" or "16UC1".
 struct ImageShape {

@@ -13,7 +13,8 @@ struct Definition {
   std::string_view text;
 };
 
-// Field lists of common_interfaces and geometry2, the same from Galactic to Jazzy. The types of
+// Field lists of common_interfaces and geometry2, the same from
+// Galactic to Jazzy; of visualization_msgs from Humble on. The types of
 // glint_msgs are Glint's own package (platform/sinks/dds/glint_msgs): fields ending in _ns are
 // monotonic times, headers hold the same time since 1970.
 constexpr std::array k_definitions{
@@ -46,6 +47,23 @@ constexpr std::array k_definitions{
                "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\n"
                "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\nuint32 binning_x\n"
                "uint32 binning_y\nsensor_msgs/RegionOfInterest roi\n"},
+    Definition{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
+    Definition{"std_msgs/String", "string data\n"},
+    Definition{"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
+    Definition{"sensor_msgs/CompressedImage",
+               "std_msgs/Header header\nstring format\nuint8[] data\n"},
+    Definition{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
+    Definition{"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
+    Definition{"visualization_msgs/Marker",
+               "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
+               "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
+               "builtin_interfaces/Duration lifetime\nbool frame_locked\n"
+               "geometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\n"
+               "string texture_resource\nsensor_msgs/CompressedImage texture\n"
+               "visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\n"
+               "string mesh_resource\nvisualization_msgs/MeshFile mesh_file\n"
+               "bool mesh_use_embedded_materials\n"},
+    Definition{"visualization_msgs/MarkerArray", "visualization_msgs/Marker[] markers\n"},
 };
 
 const Definition& definition(std::string_view name) {

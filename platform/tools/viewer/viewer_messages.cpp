@@ -1,30 +1,36 @@
 #include "platform/tools/viewer/viewer_messages.hpp"
 
+#include <utility>
+#include <vector>
+
 #include "platform/sinks/record/cdr.hpp"
 #include "platform/sinks/record/frame_patch.hpp"
 #include "platform/sinks/record/ros_messages.hpp"
 #include "platform/sinks/record/topics.hpp"
 #include "platform/tools/viewer/picture_messages.hpp"
+#include "platform/tools/viewer/scene_messages.hpp"
 
 namespace glint {
 namespace {
 
 constexpr Duration k_decision_period = milliseconds(100);  // of a tool's explanation
 constexpr Duration k_repetition = milliseconds(1000);      // of an unchanged one
-
-std::size_t searched_pixels(const FrameLayout& layout) {
-  std::size_t pixels = 0;
-  for (int i = 0; i < layout.rectangle_count; ++i) {
-    const Roi& roi = layout.rectangles[static_cast<std::size_t>(i)];
-    pixels += static_cast<std::size_t>(roi.x1 - roi.x0) * static_cast<std::size_t>(roi.y1 - roi.y0);
-  }
-  return pixels;
-}
+constexpr Duration k_scene_period = milliseconds(100);
+constexpr Duration k_robot_period = milliseconds(2000);  // for viewers that subscribe later
 
 }  // namespace
 
 ViewerMessages::ViewerMessages(const Cell& cell, PicturesTo pictures)
-    : cell_(cell), pictures_(pictures), explainer_(cell), cdr_(std::make_unique<CdrWriter>()) {}
+    : cell_(cell),
+      pictures_(pictures),
+      explainer_(cell),
+      scene_shapes_(std::make_unique<SceneMessages>(cell.tools)),
+      cdr_(std::make_unique<CdrWriter>()) {
+  if (cell.robot_valid && !cell.robot_in_reference) T_world_robot_ = cell.T_world_robot;
+  for (const NamedFile& file : cell.named_files) {
+    if (file.key == k_urdf_key) urdf_ = file.text;
+  }
+}
 
 ViewerMessages::~ViewerMessages() = default;
 
@@ -39,6 +45,10 @@ void ViewerMessages::open(DerivedOutput& output, Duration unix_offset) {
   picture_ = output.add_channel(k_picture_topic, "sensor_msgs/msg/Image", to);
   camera_info_ = output.add_channel(k_camera_info_topic, "sensor_msgs/msg/CameraInfo", to);
   regions_ = output.add_channel(k_regions_topic, "glint_msgs/msg/Regions", to);
+  scene_ = output.add_channel(k_scene_topic, "visualization_msgs/msg/MarkerArray", to);
+  transform_ = output.add_channel(k_transform_topic, "tf2_msgs/msg/TFMessage", to);
+  if (urdf_.empty()) return;
+  robot_description_ = output.add_channel(k_robot_description_topic, "std_msgs/msg/String", to);
 }
 
 void ViewerMessages::add(const FramePatch& patch) {
@@ -49,7 +59,13 @@ void ViewerMessages::add(const FramePatch& patch) {
   }
   const FrameBuffer pixels = frame_of(patch);
   const Frame frame = pixels.view(layout.mid_exposure, layout.arrival, layout.sequence);
-  const ExaminedFrame& examined = explainer_.add_frame(frame, searched_pixels(layout));
+  const ExaminedFrame& examined =
+      explainer_.add_frame(frame, std::size_t{layout.width} * layout.height);
+  std::vector<Vector3> candidates;
+  for (const ExaminedRegion& region : examined.regions) {
+    if (region.reason.empty()) candidates.push_back(region.surface_m);
+  }
+  scene_shapes_->set_candidates(std::move(candidates));
   if (pictures_ != PicturesTo::none) write_pictures(patch, frame, examined);
 }
 
@@ -67,18 +83,57 @@ void ViewerMessages::write_pictures(const FramePatch& patch, const Frame& frame,
   output_->write(regions_, layout.arrival, cdr_->bytes());
 }
 
-void ViewerMessages::add(const HeadPose& head) { explainer_.add_head(head); }
+void ViewerMessages::add(const HeadPose& head) {
+  explainer_.add_head(head);
+  if (pictures_ == PicturesTo::none || !head.valid) return;
+  write_transform_from_world(k_camera_frame, head.T_world_camera, head.time);
+}
 
 void ViewerMessages::add(const DroppedInput& input) {
   explainer_.add_refused(input.arrival, input.reason);
 }
 
-void ViewerMessages::add(const RobotFrameRecord&) {}
+// A robot on the reference body moves with it in the world: its transform is not derived here.
+void ViewerMessages::add(const RobotFrameRecord& robot) {
+  const bool valid =
+      robot.state == RegistrationState::given || robot.state == RegistrationState::accepted;
+  if (!valid || robot.in_reference) return;
+  T_world_robot_ = robot.T_world_robot;
+  next_robot_ = Time{};
+}
 
-void ViewerMessages::add(const ButtonEvent&) {}
+void ViewerMessages::add(const ButtonEvent& event) { scene_shapes_->add(event); }
+
+void ViewerMessages::write_transform_from_world(std::string_view child, const Pose& pose,
+                                                Time time) {
+  write_transform(*cdr_, time + unix_offset_, k_world_frame, child, pose);
+  output_->write(transform_, time, cdr_->bytes());
+}
+
+void ViewerMessages::write_scene(Time time) {
+  if (time < next_scene_) return;
+  next_scene_ = time + k_scene_period;
+  scene_shapes_->write(*cdr_, time + unix_offset_);
+  output_->write(scene_, time, cdr_->bytes());
+}
+
+void ViewerMessages::write_robot(Time time) {
+  if (time < next_robot_) return;
+  next_robot_ = time + k_robot_period;
+  if (T_world_robot_) write_transform_from_world(k_robot_frame, *T_world_robot_, time);
+  if (urdf_.empty()) return;
+  cdr_->begin();
+  cdr_->put(std::string_view(urdf_));
+  output_->write(robot_description_, time, cdr_->bytes());
+}
 
 void ViewerMessages::add(const PoseSample& sample) {
   explainer_.add_output(sample);
+  scene_shapes_->add(sample);
+  if (pictures_ != PicturesTo::none && sample.tool == 0) {
+    write_scene(sample.tick);
+    write_robot(sample.tick);
+  }
   Published& published = published_[sample.tool];
   if (published.any && sample.tick - published.decided < k_decision_period) return;
   published.decided = sample.tick;

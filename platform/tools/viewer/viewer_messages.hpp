@@ -4,6 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "platform/cells/cell.hpp"
 #include "platform/sinks/record/derived_messages.hpp"
@@ -12,10 +15,12 @@
 namespace glint {
 
 class CdrWriter;
+class SceneMessages;
 
 enum class PicturesTo : std::uint8_t { none, observer, file_and_observer };
 
-// /glint/explanation, always in the file too; and the pictures with what belongs to them.
+// /glint/explanation, always in the file too; and with `pictures` those, their regions, the scene,
+// the transforms of headset and robot, and the robot's description.
 class ViewerMessages : public DerivedMessages {
  public:
   // The cell outlives it.
@@ -37,6 +42,9 @@ class ViewerMessages : public DerivedMessages {
     bool any = false;
   };
   void write_pictures(const FramePatch& patch, const Frame& frame, const ExaminedFrame& examined);
+  void write_transform_from_world(std::string_view child, const Pose& pose, Time time);
+  void write_scene(Time time);
+  void write_robot(Time time);
   void write_explanation(const PoseSample& sample, const Explanation& explanation);
 
   const Cell& cell_;
@@ -44,8 +52,13 @@ class ViewerMessages : public DerivedMessages {
   Explainer explainer_;
   DerivedOutput* output_ = nullptr;
   Duration unix_offset_;
-  std::uint16_t explanation_ = 0, picture_ = 0, camera_info_ = 0, regions_ = 0;
+  std::uint16_t explanation_ = 0, picture_ = 0, camera_info_ = 0, regions_ = 0, scene_ = 0,
+                transform_ = 0, robot_description_ = 0;
   std::array<Published, k_tools_max> published_;
+  std::unique_ptr<SceneMessages> scene_shapes_;
+  Time next_scene_, next_robot_;
+  std::optional<Pose> T_world_robot_;
+  std::string urdf_;
   std::unique_ptr<CdrWriter> cdr_;
 };
 
