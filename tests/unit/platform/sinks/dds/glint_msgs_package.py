@@ -1,7 +1,8 @@
 """Every message type of Glint's own, recorded or published, is a .msg file of the package glint_msgs.
 
 The text of a recorded schema is that of the file, for each type in a recording of the default cell
-at each level, also where one type contains another. The package lists each file and depends on the
+at each level, also where one type contains another. A recorded type of another package stands in
+schemas.cpp. The package lists each file and depends on the
 package of each field. Every type of the DDS definitions has a file. python3-rosidl, where it is
 installed, reads each file.
 
@@ -17,9 +18,10 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 
 LEVELS = ("full", "roi", "blobs", "outputs")
-# At the level named: what a recording without them would not test.
+# At the level named: what a recording without them would not test. Pictures are recorded as well:
+# then a recording has each type of the live view.
 EXPECTED = {"full": {"FramePatch", "HeadPose", "Choice", "Output", "Dropped", "Button", "RobotFrame",
-                     "PenButtons", "PixelRectangle"},
+                     "PenButtons", "PixelRectangle", "Explanation", "Regions", "Region"},
             "blobs": {"Markers", "Marker", "MarkerSigma", "MarkerTurn", "MarkerDepth"}}
 SEPARATOR = "=" * 80 + "\nMSG: "
 failures = []
@@ -69,13 +71,17 @@ def types_in(schemas_of_level):
     return types
 
 
-def check_recordings(glint, messages):
+def check_recordings(glint, source, messages):
+    default = (source / "platform/cells/default.toml").read_text()
     with tempfile.TemporaryDirectory() as folder:
+        cell = pathlib.Path(folder) / "pictures.toml"
+        cell.write_text(default.replace("[record]\n", "[record]\npictures = true\n", 1))
         for level in LEVELS:
             out = pathlib.Path(folder) / level
             subprocess.run([glint, "run", "--fast", "--duration", "1", "--record-level", level,
-                            "--out", out], check=True, stdout=subprocess.DEVNULL)
+                            "--config", cell, "--out", out], check=True, stdout=subprocess.DEVNULL)
             types = types_in(schemas((out / "run.mcap").read_bytes()))
+            check_others(source, types)
             own = {name.split("/")[1] for name in types if name.startswith("glint_msgs/")}
             lacking = EXPECTED.get(level, {"Output"}) - own
             check(not lacking, f"level {level}: no schema of {sorted(lacking)}")
@@ -85,6 +91,14 @@ def check_recordings(glint, messages):
                       f"level {level}: glint_msgs/{name} is recorded as {texts}; expected the text "
                       f"of {name}.msg: {messages.get(name)!r}")
             print(f"level {level}: {len(types)} types, {len(own)} of glint_msgs")
+
+
+def check_others(source, types):
+    """The types of other packages stand in schemas.cpp."""
+    text = (source / "platform/sinks/record/schemas.cpp").read_text()
+    stated = set(re.findall(r'Definition\{"(\w+/\w+)"', text))
+    others = {name for name in types if not name.startswith("glint_msgs/")}
+    check(others <= stated, f"schemas.cpp lacks {sorted(others - stated)}")
 
 
 def check_package(package, messages):
@@ -121,7 +135,7 @@ def main():
     glint, source = sys.argv[1], pathlib.Path(sys.argv[2])
     package = source / "platform/sinks/dds/glint_msgs"
     messages = {path.stem: path.read_text() for path in (package / "msg").glob("*.msg")}
-    check_recordings(glint, messages)
+    check_recordings(glint, source, messages)
     check_package(package, messages)
     idl = (source / "platform/sinks/dds/idl/glint_msgs.idl").read_text()
     published = set(re.findall(r"struct (\w+?)_ ", idl))
