@@ -44,6 +44,13 @@ export class Frames {
     group.quaternion.set(q.x, q.y, q.z, q.w);
   }
 
+  // Hides the frames without a known relation to that group; null: none. Returns whether none is.
+  showConnected(group) {
+    const trees = this.#root.children.filter((child) => this.#groups.get(child.name) === child);
+    for (const tree of trees) tree.visible = group === null || this.#isAbove(tree, group);
+    return trees.every(({ visible }) => visible);
+  }
+
   #isAbove(group, other) {
     for (let one = other; one; one = one.parent) if (one === group) return true;
     return false;

@@ -98,8 +98,9 @@ export class SceneView {
 
   show(topic, message, tools) {
     this.#changed = true;
-    if (topic === "/glint/head_pose") this.#head(message);
-    else if (topic === "/glint/robot_frame") this.#robotFrame(message);
+    if (topic === "/glint/head_pose") {
+      if (message.valid) this.#place("hmd_world", "hmd_tof_optical", message.pose);
+    } else if (topic === "/glint/robot_frame") this.#robotFrame(message);
     else if (topic === "/tf" || topic === "/tf_static") this.#transforms(message);
     else if (topic === "/glint/pen_buttons") this.#draws = (message.held & DRAW) !== 0;
     else if (topic === "/glint/scene") this.markers.show(message);
@@ -109,30 +110,27 @@ export class SceneView {
     else this.#pose(tools.nameOf(tools.poseTool(topic)), tools.poseTool(topic), message);
   }
 
-  // The robot's base stays at the root, also when the headset finds it elsewhere.
   #robotFrame({ state, in_reference, pose }) {
     this.#robotPose = ROBOT_POSES[state] ?? "";
-    if (this.#robotPose === "" || in_reference) return;
-    this.frames.set("robot_base", "hmd_world", inverseOf(pose));
+    if (this.#robotPose !== "" && !in_reference) this.#place("hmd_world", "robot_base", pose);
   }
 
-  #head({ valid, pose }) {
-    if (!valid) return;
-    this.frames.set("hmd_world", "hmd_tof_optical", pose);
-    if (this.#headset !== null) return;
+  // The robot's base stays at the root, also when the headset finds it elsewhere.
+  #place(parent, child, pose) {
+    if (child === "robot_base") this.frames.set(child, parent, inverseOf(pose));
+    else this.frames.set(parent, child, pose);
+    if (child !== "hmd_tof_optical" || this.#headset !== null) return;
     this.#headset = headsetObject();
     this.#panel.classList.add("has-data");
     this.frames.of("hmd_tof_optical").add(this.#headset);
   }
 
-  // The tools' tips are drawn by their poses, the headset by its own.
+  // The tools' tips are drawn by their poses.
   #transforms({ transforms }) {
     for (const { header, child_frame_id, transform } of transforms) {
-      if (/^glint_\w+_tip$/.test(child_frame_id) || child_frame_id === "hmd_tof_optical") continue;
-      this.frames.set(header.frame_id, child_frame_id, {
-        position: transform.translation,
-        orientation: transform.rotation,
-      });
+      if (/^glint_\w+_tip$/.test(child_frame_id)) continue;
+      const { translation: position, rotation: orientation } = transform;
+      this.#place(header.frame_id, child_frame_id, { position, orientation });
     }
   }
 
@@ -168,7 +166,7 @@ export class SceneView {
     this.#scene.updateMatrixWorld(true);
     const target = object.getWorldPosition(new Vector3());
     this.#controls.target.copy(target);
-    this.#camera.position.copy(target).add(new Vector3(-0.55, -0.7, 0.4));
+    this.#camera.position.copy(target).add(new Vector3(-0.8, -0.9, 0.5));
     this.#controls.update();
   }
 
@@ -193,17 +191,19 @@ export class SceneView {
     if (!this.#changed || this.#renderer === null) return;
     this.#changed = false;
     this.strokes.draw();
+    const areConnected = this.frames.showConnected(this.tools.get(0)?.group.parent ?? null);
     const { clientWidth: width, clientHeight: height } = this.#host;
     this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.#renderer.setSize(width, height, false);
     this.#camera.aspect = width / height;
     this.#camera.updateProjectionMatrix();
     this.#renderer.render(this.#scene, this.#camera);
-    this.#describe();
+    this.#describe(areConnected);
   }
 
-  #describe() {
+  #describe(areConnected) {
     const parts = ["Grid: 100 mm."];
+    if (!areConnected) parts.push("Not drawn: frames without a transform to the pen's.");
     for (const { group, name, axes } of this.tools.values()) {
       if (!group.visible) continue;
       const millimetres = axes?.map((axis) => (axis * 1e3).toFixed(1)).join(", ");

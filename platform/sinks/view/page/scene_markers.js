@@ -65,6 +65,7 @@ export class MarkerObjects {
     object.removeFromParent();
     object.traverse((part) => {
       part.geometry?.dispose();
+      part.dispose?.(); // of copies
       part.material?.dispose();
     });
     this.#objects.delete(key);

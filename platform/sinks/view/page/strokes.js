@@ -21,7 +21,8 @@ export class StrokeLines {
     const { points } = this.#current,
       last = points.at(-1);
     if (last !== undefined && Math.hypot(x - last[0], y - last[1], z - last[2]) < SPACING_M) return;
-    if (isDrawn && ++this.count > POINTS_MAX) return;
+    if (isDrawn && this.count === POINTS_MAX) return;
+    if (isDrawn) ++this.count;
     points.push([x, y, z]);
     if (!isDrawn && points.length > TRAIL_POINTS_MAX) points.shift();
     this.#current.changed = true;

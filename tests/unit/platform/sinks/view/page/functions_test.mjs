@@ -59,6 +59,7 @@ test("a series keeps 30 s, and a gap stays a gap", () => {
   const series = new Series("largest");
   for (let time = 0; time < 60; time += BIN_S / 2) series.add(time + BIN_S / 4, time);
   series.add(62, 5);
+  series.add(62, 3);
   const values = series.values(binOf(62));
   assert.equal(values.length, 300);
   assert.equal(values.at(-1), 5);
