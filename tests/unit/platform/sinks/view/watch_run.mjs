@@ -1,7 +1,7 @@
 // Watches a live run with Foxglove's client, and compares what arrives with the run's recording.
-//   node watch_run.mjs GLINT OUT_FOLDER
+//   node watch_run.mjs GLINT OUT_FOLDER DEFAULT_CELL
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 import { parse } from "@foxglove/rosmsg";
@@ -12,10 +12,14 @@ import WebSocket from "ws";
 
 import { acceptable, runStarter } from "./start_run.mjs";
 
-const [glint, folder] = process.argv.slice(2);
+const [glint, folder, defaultCell] = process.argv.slice(2);
+// With pictures in the recording, too, each message of the view is a recorded one.
+mkdirSync(folder, { recursive: true });
+const cell = join(folder, "pictures.toml");
+writeFileSync(cell, readFileSync(defaultCell, "utf8").replace("[record]\n", "[record]\npictures = true\n"));
 const { FoxgloveClient } = foxglove;
 const protocol = FoxgloveClient.SUPPORTED_SUBPROTOCOL;
-const startRun = runStarter(glint, folder);
+const startRun = runStarter(glint, folder, "--config", cell);
 
 const viewFigures = (name) => JSON.parse(readFileSync(join(folder, `${name}.json`), "utf8")).view;
 
