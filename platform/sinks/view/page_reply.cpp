@@ -8,6 +8,8 @@
 namespace glint {
 namespace {
 
+using namespace std::string_view_literals;  // clang++ does not measure strings of this length
+
 // k_page_parts and k_page_policy, of page/bundle.mjs or, in a build without npm, of no_page.inc.
 #include "view_page.inc"
 

@@ -64,7 +64,7 @@ writeFileSync(
   `constexpr const char* k_page_type = "text/html; charset=utf-8";
 constexpr std::string_view k_page_policy = ${quoted(policy)};
 constexpr std::string_view k_page_parts[] = {
-${parts.map((part) => `    ${quoted(part)},`).join("\n")}
+${parts.map((part) => `    ${quoted(part)}sv,`).join("\n")}
 };
 `,
 );
