@@ -28,7 +28,7 @@ namespace glint {
 namespace {
 
 struct PathArguments {
-  std::string input, with, button, csv, urscript, program, format, name, json;
+  std::string input, with, planes, button, csv, urscript, program, format, name, json;
   std::vector<std::string> edits;
   RecordedPathOptions options;
   ProgramSettings settings;
@@ -161,7 +161,10 @@ RecordedPath input_path(const PathArguments& arguments) {
     const DrawnPath first = read_strokes(arguments.with).path;
     drawn.path.insert(drawn.path.begin(), first.begin(), first.end());
   }
-  drawn.path = edited(named(std::move(drawn.path)), arguments.edits);
+  std::vector<MappedPlane> planes;
+  if (!arguments.planes.empty())
+    planes = read_mapped_planes(arguments.planes, map_pose(arguments.reach).inverse());
+  drawn.path = edited(named(std::move(drawn.path)), arguments.edits, planes);
   if (drawn.path.empty())
     throw InputError(arguments.input + ": no element left; expected one or more");
   return drawn;
@@ -249,6 +252,8 @@ void add_path(CLI::App& app, int& exit_code) {
       "--program seam.json\n"
       "  glint path out/again.mcap --with seam.json --edit \"replace seam stroke_2\" --program "
       "seam.json\n"
+      "  glint path seam.json --planes map.json --edit \"project seam 1\" --edit \"approach seam "
+      "tool 50mm\" --program seam.src\n"
       "A held button draws a stroke, a click sets a waypoint. Without --robot no point is checked "
       "for "
       "reachability.\n"
@@ -263,13 +268,16 @@ void add_path(CLI::App& app, int& exit_code) {
       ->add_option("--edit", arguments->edits,
                    "edit of the path, applied in the given order: \"delete NAME\", \"rename NAME "
                    "NEW\", \"replace NAME NEWER\", \"offset NAME DIRECTION LENGTH\" (x,y,z, tool "
-                   "or normal), \"mirror NAME POINT NORMAL\" (x,y,z); NAME * is every element")
+                   "or normal), \"mirror NAME POINT NORMAL\" (x,y,z), \"project NAME NUMBER\" (of "
+                   "a plane), \"approach NAME DIRECTION LENGTH\"; NAME * is every element")
       ->allow_extra_args(false);
   command->add_option("--tool", arguments->options.tool,
                       "name of the pen; default: the first tool");
   command->add_option("--button", arguments->button,
                       "intervals with the button held, FROM..TO in seconds, separated by commas; "
                       "default: the recorded ones");
+  command->add_option("--planes", arguments->planes,
+                      "figures of `glint map --json`: planes of the edit \"project\"");
   CaptureSettings& capture = arguments->options.capture;
   add_length(command, "--spacing", capture.stroke.spacing_m, "distance between points of a stroke",
              1e-4, 0.1);
@@ -309,6 +317,9 @@ void add_path(CLI::App& app, int& exit_code) {
   command->add_option("--acceleration", settings.acceleration_m_s2, "m/s^2")
       ->check(in_range(1e-2, 10.0))
       ->capture_default_str();
+  command->add_flag_callback(
+      "--fit-shapes", [arguments] { arguments->settings.shapes.emplace(); },
+      "programs: one move for each line and arc of a stroke that agrees with its covariance");
   add_length(command, "--blend", settings.blend_m, "largest blend radius", 0, 0.1);
   add_reach_options(*command, arguments->reach);
   add_publish_options(*command, arguments->publish);

@@ -52,7 +52,7 @@ void add_collisions(const DrawnPath& path, const FollowedPath& followed,
                     const PathCheckSettings& settings, PathReachReport& report,
                     FailedPoints& failed) {
   CollisionSettings collisions = arguments.collisions;
-  if (!arguments.map_pose.empty()) collisions.T_map_robot = pose_from_xyz_rpy(arguments.map_pose);
+  collisions.T_map_robot = map_pose(arguments);
   const RobotModel robot = load_robot({arguments.robot, arguments.package_dirs});
   const PathMotion motion = path_motion(path, followed, chain, settings, arguments.steps);
   for (const PathCollision& one : check_collisions(motion, robot, chain, collisions)) {
@@ -118,11 +118,10 @@ void add_reach_options(CLI::App& command, ReachArguments& arguments) {
                       "map of `glint map --octomap`: checks collisions of the links with it")
           ->needs(robot);
   command
-      .add_option("--octomap-pose", arguments.map_pose,
-                  "the robot's frame in that map: x,y,z,roll,pitch,yaw in m and rad; default: 0")
+      .add_option("--map-pose", arguments.map_pose,
+                  "the robot's frame in the map: x,y,z,roll,pitch,yaw in m and rad; default: 0")
       ->delimiter(',')
-      ->expected(6)
-      ->needs(octomap);
+      ->expected(6);
   command
       .add_option("--touching", arguments.collisions.touching,
                   "links that may touch the map, separated by commas")
@@ -146,6 +145,10 @@ void add_reach_options(CLI::App& command, ReachArguments& arguments) {
       .add_flag("--unchecked", arguments.unchecked,
                 "write in spite of failed points, which the program's header states; exit code 1")
       ->needs(robot);
+}
+
+Pose map_pose(const ReachArguments& arguments) {
+  return arguments.map_pose.empty() ? Pose{} : pose_from_xyz_rpy(arguments.map_pose);
 }
 
 PathReachReport check_path(const DrawnPath& path, const ReachArguments& arguments) {

@@ -31,6 +31,9 @@ struct PathReachReport {
 
 void add_reach_options(CLI::App& command, ReachArguments& arguments);
 
+// The robot's frame in the map.
+[[nodiscard]] Pose map_pose(const ReachArguments& arguments);
+
 // Prints the failures. Throws InputError for an invalid robot and, without --unchecked, for a
 // failure.
 [[nodiscard]] PathReachReport check_path(const DrawnPath& path, const ReachArguments& arguments);
