@@ -25,7 +25,7 @@ inline constexpr std::string_view k_picture_topic = "/glint/picture";
 inline constexpr std::string_view k_camera_info_topic = "/glint/camera_info";
 inline constexpr std::string_view k_regions_topic = "/glint/regions";
 inline constexpr std::string_view k_scene_topic = "/glint/scene";
-inline constexpr std::string_view k_robot_description_topic = "/robot_description";
+inline constexpr std::string_view k_recorded_robot_description_topic = "/robot_description";
 
 // Letters, digits and '_' of the name; "toolN" if the result is empty or the tool has no name.
 [[nodiscard]] std::string topic_name(const std::vector<std::string>& tool_names, std::size_t tool);

@@ -48,7 +48,8 @@ void ViewerMessages::open(DerivedOutput& output, Duration unix_offset) {
   scene_ = output.add_channel(k_scene_topic, "visualization_msgs/msg/MarkerArray", to);
   transform_ = output.add_channel(k_transform_topic, "tf2_msgs/msg/TFMessage", to);
   if (urdf_.empty()) return;
-  robot_description_ = output.add_channel(k_robot_description_topic, "std_msgs/msg/String", to);
+  robot_description_ =
+      output.add_channel(k_recorded_robot_description_topic, "std_msgs/msg/String", to);
 }
 
 void ViewerMessages::add(const FramePatch& patch) {

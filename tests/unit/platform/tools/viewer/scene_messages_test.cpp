@@ -182,7 +182,7 @@ TEST(ViewedScene, InTheFileHasTheTopicsOfTheView) {
   for (const auto& [topic, messages] : recorded.messages) {
     EXPECT_EQ(viewed.messages.at(topic).size(), messages.size()) << topic;
   }
-  const auto& description = recorded.messages.at(std::string(k_robot_description_topic));
+  const auto& description = recorded.messages.at(std::string(k_recorded_robot_description_topic));
   CdrReader from(description.front().cdr);
   EXPECT_EQ(from.get_text(), "<robot name=\"arm\"/>");
 }
