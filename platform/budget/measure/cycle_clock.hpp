@@ -12,7 +12,7 @@
 namespace glint {
 
 // Serialising read: earlier instructions are complete, so that each counts in its own interval.
-[[nodiscard]] inline std::uint64_t cycle_count() noexcept {
+[[nodiscard]] inline std::uint64_t serialised_count() noexcept {
 #if defined(__x86_64__)
   unsigned core = 0;
   const std::uint64_t count = __rdtscp(&core);
@@ -31,10 +31,10 @@ namespace glint {
 [[nodiscard]] inline double nanoseconds_per_count() {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
-  const std::uint64_t first = cycle_count();
+  const std::uint64_t first = serialised_count();
   while (Clock::now() - begin < std::chrono::milliseconds(50)) {
   }
-  const std::uint64_t last = cycle_count();
+  const std::uint64_t last = serialised_count();
   const std::chrono::duration<double, std::nano> elapsed = Clock::now() - begin;
   return elapsed.count() / static_cast<double>(last - first);
 }
@@ -43,9 +43,9 @@ namespace glint {
 // many counts.
 [[nodiscard]] inline std::uint64_t counter_step() {
   std::uint64_t least = ~std::uint64_t{0};
-  std::uint64_t before = cycle_count();
+  std::uint64_t before = serialised_count();
   for (int reading = 0; reading < 10'000; ++reading) {
-    const std::uint64_t now = cycle_count();
+    const std::uint64_t now = serialised_count();
     if (now != before) least = std::min(least, now - before);
     before = now;
   }

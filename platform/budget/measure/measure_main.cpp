@@ -91,9 +91,9 @@ class Meter {
     for (int i = 0; i < repeat_; ++i) {
       kernel.rewind();
       for (std::size_t byte = 0; byte < evicting_.size(); byte += 64) evicting_[byte] += 1;
-      const std::uint64_t begin = cycle_count();
+      const std::uint64_t begin = serialised_count();
       kernel.run();
-      counts_.push_back(static_cast<double>(cycle_count() - begin));
+      counts_.push_back(static_cast<double>(serialised_count() - begin));
     }
     const auto middle = counts_.begin() + static_cast<std::ptrdiff_t>(counts_.size() / 2);
     std::nth_element(counts_.begin(), middle, counts_.end());
