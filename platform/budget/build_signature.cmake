@@ -9,8 +9,9 @@ list(APPEND words ${options})
 set(flags "")
 foreach(word ${words})
   # Warnings, includes and path maps leave the code as it is; optimisation, machine and semantics
-  # do not.
-  if(word MATCHES "^-(O|m|f|D)" AND NOT word MATCHES "^-f(diagnostics|file-prefix|debug-prefix|macro-prefix)")
+  # do not. Kernels and nodes have no variable of a shared library, whose access one option changes.
+  if(word MATCHES "^-(O|m|f|D)" AND NOT word STREQUAL "-mno-direct-extern-access"
+      AND NOT word MATCHES "^-f(diagnostics|file-prefix|debug-prefix|macro-prefix)")
     list(APPEND flags ${word})
   endif()
 endforeach()
