@@ -11,6 +11,7 @@ await until("tracked", sentenceIs, "measured", "pen");
 console.log("tracked");
 await once(process.stdin, "data");
 process.stdin.pause();
+await until("tracked at the end", sentenceIs, "measured", "pen");
 console.log(await text("#sentences"), await text("#scene-text"));
-await page.screenshot({ path: picture, fullPage: true });
+await page.screenshot({ path: picture });
 await browser.close();
