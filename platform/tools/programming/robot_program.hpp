@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "platform/tools/programming/path.hpp"
-#include "platform/tools/programming/stroke_segments.hpp"
+#include "platform/tools/programming/stroke_moves.hpp"
 
 namespace glint {
 

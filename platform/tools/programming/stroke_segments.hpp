@@ -8,25 +8,11 @@
 // points share make the test accept more.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <vector>
 
-#include "kernels/motion/motion_state.hpp"
+#include "platform/tools/programming/segment_fit.hpp"
 
 namespace glint {
-
-enum class SegmentKind : std::uint8_t { free, line, arc };
-
-// From point `first` to point `last` of the stroke; neighbours share a point.
-struct StrokeSegment {
-  SegmentKind kind = SegmentKind::free;
-  std::size_t first = 0, last = 0;
-  double chi_square = 0;  // of the residuals; free: 0
-  // A line's point and direction; an arc's centre, axis (it turns to the left about it) and radius.
-  Vector3 point = Vector3::Zero(), direction = Vector3::UnitZ();
-  double radius_m = 0;
-};
 
 struct SegmentSettings {
   double quantile_sigma = 3;     // of the chi-square test: 3 is 99.9 %
@@ -38,20 +24,5 @@ struct SegmentSettings {
 // Requires two points or more.
 [[nodiscard]] std::vector<StrokeSegment> stroke_segments(const std::vector<UncertainPose>& points,
                                                          const SegmentSettings& settings);
-
-// The point of a line or an arc that is nearest to `position`.
-[[nodiscard]] Vector3 nearest_on(const StrokeSegment& segment, const Vector3& position);
-
-// A move of a stroke, to `pose` by a line, or by an arc through `via`. The first one is its begin.
-struct StrokeMove {
-  Pose pose;  // unit quaternion
-  std::optional<Pose> via{};
-};
-
-// With settings: one move for each line, one or two for each arc. Corners are where two fitted
-// segments meet. Without settings, and in free parts: one move for each point. Requires one point
-// or more.
-[[nodiscard]] std::vector<StrokeMove> stroke_moves(const std::vector<UncertainPose>& points,
-                                                   const std::optional<SegmentSettings>& settings);
 
 }  // namespace glint

@@ -1,6 +1,6 @@
 // Lines, arcs and corners of strokes made from shapes that are known, with noise of their
 // covariance.
-#include "platform/tools/programming/stroke_segments.hpp"
+#include "platform/tools/programming/stroke_moves.hpp"
 
 #include <gtest/gtest.h>
 
