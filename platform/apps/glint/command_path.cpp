@@ -191,7 +191,7 @@ int make_path(PathArguments& arguments) {
   const RecordedPath drawn = input_path(arguments);
   arguments.settings.recording =
       std::filesystem::path(arguments.input).filename().string() + ", tool " + drawn.tool;
-  const PathReachReport reach = check_path(drawn.path, arguments.reach);
+  const PathReachReport reach = check_path(drawn.path, arguments.settings.shapes, arguments.reach);
   arguments.settings.checks = reach.header;
   const StrokesFile strokes{drawn.path, drawn.tool, drawn.unix_offset};
   // Makes all texts before the first file: a rejected path leaves no file.

@@ -10,6 +10,7 @@
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/tools/programming/robot_program.hpp"
+#include "platform/tools/programming/sampled_path.hpp"
 #include "platform/tools/reference/find_reference.hpp"
 #include "platform/tools/robot/joint_file.hpp"
 
@@ -151,10 +152,12 @@ Pose map_pose(const ReachArguments& arguments) {
   return arguments.map_pose.empty() ? Pose{} : pose_from_xyz_rpy(arguments.map_pose);
 }
 
-PathReachReport check_path(const DrawnPath& path, const ReachArguments& arguments) {
+PathReachReport check_path(const DrawnPath& drawn, const std::optional<SegmentSettings>& shapes,
+                           const ReachArguments& arguments) {
   if (arguments.robot.empty()) return {{}, ProgramSettings{}.checks};
   const KinematicChain chain = read_chain(arguments.robot, arguments.tip);
   const PathCheckSettings settings = settings_of(arguments, chain);
+  const DrawnPath path = shapes ? sampled_path(drawn, *shapes, arguments.steps) : drawn;
   const FollowedPath followed = follow_path(path, chain, settings);
   PathReachReport report;
   FailedPoints failed;
@@ -166,7 +169,8 @@ PathReachReport check_path(const DrawnPath& path, const ReachArguments& argument
   if (collisions) add_collisions(path, followed, chain, arguments, settings, report, failed);
   const std::vector<std::string> lines = listed(report.failures);
   for (const std::string& line : lines) std::printf("failed  %s\n", printable(line).c_str());
-  const std::string points = std::to_string(point_count(path)) + " points";
+  const std::string points =
+      std::to_string(point_count(path)) + (shapes ? " points of the fitted moves" : " points");
   const std::string robot = "robot " + chain.robot + ", link " + chain.tip;
   const std::string what =
       std::string("reachability, joint limits, singularities") + (collisions ? ", collisions" : "");

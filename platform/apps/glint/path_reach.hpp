@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/tools/programming/collision_check.hpp"
 #include "platform/tools/programming/reach_check.hpp"
+#include "platform/tools/programming/stroke_segments.hpp"
 
 namespace glint {
 
@@ -34,8 +36,11 @@ void add_reach_options(CLI::App& command, ReachArguments& arguments);
 // The robot's frame in the map.
 [[nodiscard]] Pose map_pose(const ReachArguments& arguments);
 
-// Prints the failures. Throws InputError for an invalid robot and, without --unchecked, for a
-// failure.
-[[nodiscard]] PathReachReport check_path(const DrawnPath& path, const ReachArguments& arguments);
+// With shapes the points of the fitted moves are checked instead of the path's: they are numbered
+// along each stroke. Prints the failures. Throws InputError for an invalid robot and, without
+// --unchecked, for a failure.
+[[nodiscard]] PathReachReport check_path(const DrawnPath& drawn,
+                                         const std::optional<SegmentSettings>& shapes,
+                                         const ReachArguments& arguments);
 
 }  // namespace glint

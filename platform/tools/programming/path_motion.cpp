@@ -12,25 +12,14 @@ namespace {
 constexpr double k_steps_max = 10'000;      // of one move
 constexpr double k_same_joints_max = 0.01;  // rad or m: far above the tolerances of a solution
 
-int step_count(const Pose& from, const Pose& to, const MotionSteps& steps) {
-  const double distance = (to.translation - from.translation).norm();
-  const double angle = rotation_vector(from.rotation.conjugate() * to.rotation).norm();
-  const double count =
-      std::ceil(std::max({distance / steps.distance_m, angle / steps.rotation_rad, 1.0}));
-  if (!(count <= k_steps_max)) {
-    throw InputError("path: a move of " + std::to_string(distance) + " m has more than " +
-                     std::to_string(static_cast<int>(k_steps_max)) +
-                     " steps; expected a larger --collision-step");
-  }
-  return static_cast<int>(count);
-}
-
 // Joint positions between two points, without both; empty if the move cannot be followed.
 std::optional<std::vector<KDL::JntArray>> between(const Pose& from, const KDL::JntArray& begin,
                                                   const Pose& to, const KDL::JntArray& end,
                                                   InverseKinematics& solver,
                                                   const MotionSteps& steps) {
-  const int count = step_count(from, to, steps);
+  const int count =
+      step_count((to.translation - from.translation).norm(),
+                 rotation_vector(from.rotation.conjugate() * to.rotation).norm(), steps);
   std::vector<KDL::JntArray> joints{begin};
   for (int i = 1; i <= count; ++i) {
     const double share = static_cast<double>(i) / count;
@@ -46,6 +35,17 @@ std::optional<std::vector<KDL::JntArray>> between(const Pose& from, const KDL::J
 }
 
 }  // namespace
+
+int step_count(double distance_m, double rotation_rad, const MotionSteps& steps) {
+  const double count =
+      std::ceil(std::max({distance_m / steps.distance_m, rotation_rad / steps.rotation_rad, 1.0}));
+  if (!(count <= k_steps_max)) {
+    throw InputError("path: a move of " + std::to_string(distance_m) + " m has more than " +
+                     std::to_string(static_cast<int>(k_steps_max)) +
+                     " steps; expected a larger --collision-step");
+  }
+  return static_cast<int>(count);
+}
 
 PathMotion path_motion(const DrawnPath& path, const FollowedPath& followed,
                        const KinematicChain& chain, const PathCheckSettings& settings,

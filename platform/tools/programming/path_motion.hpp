@@ -30,6 +30,9 @@ struct PathMotion {
   std::int64_t not_followed = 0;  // of them
 };
 
+// Equal steps of a move of this length and rotation. Throws InputError for more than 10,000.
+[[nodiscard]] int step_count(double distance_m, double rotation_rad, const MotionSteps& steps);
+
 // `followed` is the result of follow_path for this path. Throws InputError for a move of more than
 // 10,000 steps.
 [[nodiscard]] PathMotion path_motion(const DrawnPath& path, const FollowedPath& followed,
