@@ -1,19 +1,18 @@
 // glint path: path drawn with the pen while its button was held, as a table and a robot program in
 // a controller's language.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/apps/glint/commands.hpp"
-#include "platform/apps/glint/losses_json.hpp"
 #include "platform/apps/glint/output_file.hpp"
 #include "platform/apps/glint/path_reach.hpp"
+#include "platform/apps/glint/path_report.hpp"
 #include "platform/apps/glint/publishing.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
@@ -23,120 +22,25 @@
 #include "platform/tools/programming/stroke_edits.hpp"
 #include "platform/tools/programming/strokes_json.hpp"
 #include "platform/tools/programming/strokes_recording.hpp"
+#include "platform/tools/programming/user_frame.hpp"
 
 namespace glint {
 namespace {
 
 struct PathArguments {
   std::string input, with, planes, button, csv, urscript, program, format, name, json;
-  std::vector<std::string> edits;
+  std::vector<std::string> edits, frame;
   RecordedPathOptions options;
   ProgramSettings settings;
   ReachArguments reach;
   PublishOptions publish;
 };
 
-double largest_sigma_m(const DrawnPath& path) {
-  double most = 0;
-  for (const PathElement& element : path) {
-    for (const UncertainPose& point : element.points) {
-      most = std::max(most, point.covariance.topLeftCorner<3, 3>().trace() / 3);
-    }
-  }
-  return std::sqrt(most);
-}
-
-double median_sigma_m(const DrawnPath& path) {
-  std::vector<double> variances;
-  for (const PathElement& element : path)
-    for (const UncertainPose& point : element.points)
-      variances.push_back(point.covariance.topLeftCorner<3, 3>().trace() / 3);
-  if (variances.empty()) return 0;
-  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-  std::nth_element(variances.begin(), middle, variances.end());
-  return std::sqrt(*middle);
-}
-
-void print_elements(const DrawnPath& path) {
-  int number = 0;
-  for (const PathElement& element : path) {
-    const UncertainPose& first = element.points.front();
-    const Vector3& at = first.pose.translation;
-    std::printf("%3d  %-12s  %-8s  %5zu points  at %9.3f s  from %+.4f %+.4f %+.4f m\n", ++number,
-                element.name.c_str(), name_of(element.kind), element.points.size(),
-                static_cast<double>(first.time.nanoseconds) * 1e-9, at.x(), at.y(), at.z());
-  }
-}
-
-void print_capture(const RecordedPath& drawn, double spacing_m) {
-  const CaptureCounts& counts = drawn.counts;
-  std::printf("poses while held %lld, used %lld; largest sigma an axis %.2f mm\n",
-              static_cast<long long>(counts.poses), static_cast<long long>(counts.poses_accepted),
-              1e3 * largest_sigma_m(drawn.path));
-  if (drawn.poses == PathPoses::smoothed) {
-    std::printf("smoothed over %lld measured frames; median sigma an axis %.2f mm\n",
-                static_cast<long long>(drawn.frames), 1e3 * median_sigma_m(drawn.path));
-  } else {
-    std::printf("poses as sent at the ticks; median sigma an axis %.2f mm\n",
-                1e3 * median_sigma_m(drawn.path));
-  }
-  if (spacing_m < 2 * largest_sigma_m(drawn.path)) {
-    std::printf(
-        "notice  points are %.2f mm apart, less than twice their sigma: noise dominates some; set "
-        "a wider --spacing, or keep a reference body in view\n",
-        1e3 * spacing_m);
-  }
-  const auto notice = [](std::int64_t count, const char* what) {
-    if (count > 0) std::printf("notice  %lld %s\n", static_cast<long long>(count), what);
-  };
-  if (drawn.losses.any())
-    std::printf("notice  the recording lacks %s\n", text_of(drawn.losses).c_str());
-  notice(drawn.replay_mismatches, "output records differ from the replay's, which was smoothed");
-  notice(counts.not_measured, "poses left out: not measured");
-  notice(counts.not_in_robot, "poses left out: not in the robot's frame");
-  notice(counts.not_usable, "poses left out: out of order or a jump");
-  notice(counts.gaps, "strokes ended by a lost pen; the next pose begins another");
-  notice(counts.presses_without_effect,
-         "button presses without effect: no pose, or nothing to delete or undo");
-  notice(counts.points_over_capacity, "points left out: more than --points-max");
-  notice(counts.strokes_over_capacity, "elements left out: more than the capacity");
-}
-
-nlohmann::ordered_json figures(const RecordedPath& drawn) {
-  nlohmann::ordered_json elements = nlohmann::ordered_json::array();
-  for (const PathElement& element : drawn.path) {
-    elements.push_back({{"name", element.name},
-                        {"kind", name_of(element.kind)},
-                        {"points", element.points.size()}});
-  }
-  const CaptureCounts& counts = drawn.counts;
-  return {{"tool", drawn.tool},
-          {"events", drawn.events},
-          {"elements", elements},
-          {"points", point_count(drawn.path)},
-          {"smoothed", drawn.poses == PathPoses::smoothed},
-          {"frames", drawn.frames},
-          {"replay_mismatches", drawn.replay_mismatches},
-          {"median_sigma_mm", 1e3 * median_sigma_m(drawn.path)},
-          {"largest_sigma_mm", 1e3 * largest_sigma_m(drawn.path)},
-          {"poses", counts.poses},
-          {"taken", counts.poses_accepted},
-          {"not_measured", counts.not_measured},
-          {"not_in_robot", counts.not_in_robot},
-          {"not_usable", counts.not_usable},
-          {"gaps", counts.gaps},
-          {"presses_in_vain", counts.presses_without_effect},
-          {"points_left_out", counts.points_over_capacity},
-          {"strokes_left_out", counts.strokes_over_capacity},
-          {"missing", losses_json(drawn.losses)}};
-}
-
 void publish(const RecordedPath& drawn, const PublishOptions& options) {
   if (options.seconds <= 0) return;
   std::vector<UncertainPose> points;
-  for (const PathElement& element : drawn.path) {
+  for (const PathElement& element : drawn.path)
     points.insert(points.end(), element.points.begin(), element.points.end());
-  }
   MapPublisher publisher(options.settings);
   publisher.publish_path(points, drawn.unix_offset, publishing_time());
   keep_publishing(publisher, options);
@@ -179,16 +83,19 @@ std::vector<PathFile> requested_files(const PathArguments& arguments) {
   std::vector<PathFile> files;
   if (!arguments.csv.empty()) files.push_back({arguments.csv, ProgramFormat::csv});
   if (!arguments.urscript.empty()) files.push_back({arguments.urscript, ProgramFormat::urscript});
-  if (!arguments.program.empty()) {
+  if (!arguments.program.empty())
     files.push_back({arguments.program, program_format(arguments.format, arguments.program)});
-  }
   return files;
 }
 
 int make_path(PathArguments& arguments) {
   if (!arguments.button.empty()) arguments.options.presses = press_times(arguments.button);
   const std::vector<PathFile> files = requested_files(arguments);
-  const RecordedPath drawn = input_path(arguments);
+  RecordedPath drawn = input_path(arguments);
+  if (!arguments.frame.empty()) {
+    arguments.settings.T_robot_user = user_frame(drawn.path, arguments.frame);
+    drawn.path = without(std::move(drawn.path), arguments.frame);
+  }
   arguments.settings.recording =
       std::filesystem::path(arguments.input).filename().string() + ", tool " + drawn.tool;
   const PathReachReport reach = check_path(drawn.path, arguments.settings.shapes, arguments.reach);
@@ -214,7 +121,7 @@ int make_path(PathArguments& arguments) {
     }
     std::printf("written  %s\n", files[i].name.c_str());
   }
-  nlohmann::ordered_json json = figures(drawn);
+  nlohmann::ordered_json json = path_figures(drawn);
   if (!arguments.reach.robot.empty()) {
     json["reach_failures"] = reach.failures;
     json["moves_not_followed"] = reach.moves_not_followed;
@@ -254,9 +161,9 @@ void add_path(CLI::App& app, int& exit_code) {
       "seam.json\n"
       "  glint path seam.json --planes map.json --edit \"project seam 1\" --edit \"approach seam "
       "tool 50mm\" --program seam.src\n"
+      "  glint path seam.json --with corners.json --frame o,x,xy --program seam.src\n"
       "A held button draws a stroke, a click sets a waypoint. Without --robot no point is checked "
-      "for "
-      "reachability.\n"
+      "for reachability.\n"
       "Poses are smoothed in hindsight over the measured frames of a stroke; --live: as sent.\n"
       "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
   command
@@ -299,8 +206,16 @@ void add_path(CLI::App& app, int& exit_code) {
   command->add_option("--name", arguments->name, "name of the program; default: the file's name");
   ProgramSettings& settings = arguments->settings;
   command
+      ->add_option(
+          "--frame", arguments->frame,
+          "names of three waypoints of the path: origin, on +x, in the x-y plane; programs "
+          "are written in this frame, without these waypoints")
+      ->delimiter(',')
+      ->expected(3);
+  command
       ->add_option("--user-frame", settings.user_frame,
-                   "the controller's number of the robot's frame (KRL, RAPID, LS); 0: its base")
+                   "the controller's number of the robot's frame (KRL, RAPID, LS); 0: its base; "
+                   "with --frame: of the drawn frame (LS)")
       ->check(in_range(0, 99))
       ->capture_default_str();
   command

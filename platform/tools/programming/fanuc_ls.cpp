@@ -71,7 +71,9 @@ std::vector<std::string> instructions(const RobotProgram& program) {
     for (const std::string& line : remarks(text)) lines.push_back("  !" + line);
   };
   for (const std::string& line : program.header) remark(line);
-  remark("The tip in the user frame below.");
+  remark(program.T_robot_user ? "Enter the user frame above as UFRAME " +
+                                    std::to_string(program.user_frame) + " first."
+                              : "The tip in the user frame below.");
   remark("Acceleration: the controller's.");
   lines.push_back("  UFRAME_NUM=" + std::to_string(program.user_frame));
   lines.push_back("  UTOOL_NUM=" + std::to_string(program.tool_frame));
@@ -91,7 +93,7 @@ std::vector<std::string> instructions(const RobotProgram& program) {
 
 std::string fanuc_ls(const RobotProgram& program) {
   check_name(program.name, {"ls", 36, k_fanuc_words});
-  check_number(program.user_frame, 0, 9, "ls", "user frame");
+  check_number(program.user_frame, program.T_robot_user ? 1 : 0, 9, "ls", "user frame");
   check_number(program.tool_frame, 1, 10, "ls", "tool frame");
   const std::vector<Pose> positions = positions_of(program);
   if (positions.size() > k_fanuc_positions_max) {

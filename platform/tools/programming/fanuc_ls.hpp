@@ -17,7 +17,8 @@ inline constexpr std::size_t k_fanuc_positions_max = 1500;  // of one program
 
 // The name is written in upper case; the controller expects the file NAME.ls.
 // Throws InputError for more positions than k_fanuc_positions_max, a name longer than 36 characters
-// or reserved, a user frame above 9, a tool frame outside of 1 to 10, a speed outside of 1 to
+// or reserved, a user frame above 9, or of 0 with T_robot_user (which is not defined in LS: the
+// remarks state the pose of UFRAME n), a tool frame outside of 1 to 10, a speed outside of 1 to
 // 2000 mm/s, or a blend above 1 m.
 [[nodiscard]] std::string fanuc_ls(const RobotProgram& program);
 

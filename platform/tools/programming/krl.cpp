@@ -19,11 +19,12 @@ constexpr std::string_view k_krl_words[] = {
     "TRIGGER",  "TRUE",     "UNTIL",   "WAIT",    "WHEN",     "WHILE",   "WITH"};
 
 // 0.1 um and 0.00001 degrees: a REAL has 7 digits.
-std::string aggregate(const Pose& pose) {
+std::string aggregate(const Pose& pose, int degree_digits = 5) {
   const EulerAngles angles = euler_angles(pose.rotation);
   const auto mm = [&](int i) { return fixed_text(1e3 * pose.translation[i], 4); };
-  return "{X " + mm(0) + ",Y " + mm(1) + ",Z " + mm(2) + ",A " + fixed_text(angles.z_deg, 5) +
-         ",B " + fixed_text(angles.y_deg, 5) + ",C " + fixed_text(angles.x_deg, 5) + '}';
+  const auto degrees = [&](double angle) { return fixed_text(angle, degree_digits); };
+  return "{X " + mm(0) + ",Y " + mm(1) + ",Z " + mm(2) + ",A " + degrees(angles.z_deg) + ",B " +
+         degrees(angles.y_deg) + ",C " + degrees(angles.x_deg) + '}';
 }
 
 std::string frame_text(const char* list, int number) {
@@ -40,7 +41,9 @@ std::string krl(const RobotProgram& program) {
   for (const std::string& line : program.header) text += "; " + line + '\n';
   text += "; The tip in the base frame below: mm, degrees about the moving axes z, y, x.\n";
   text += "BAS(#INITMOV,0)\n";
-  text += "$BASE=" + frame_text("BASE_DATA", program.user_frame) + '\n';
+  const auto& frame = program.T_robot_user;  // its rotation acts on the whole path
+  text += "$BASE=" + (frame ? aggregate(*frame, 7) : frame_text("BASE_DATA", program.user_frame)) +
+          '\n';
   text += "$TOOL=" + frame_text("TOOL_DATA", program.tool_frame) + '\n';
   text += "$IPO_MODE=#BASE\n$ORI_TYPE=#VAR\n";
   text += "$ACC.CP=" + fixed_text(program.acceleration_m_s2, 6) + '\n';

@@ -11,8 +11,8 @@
 
 namespace glint {
 
-// User frame 0 is $NULLFRAME, n is BASE_DATA[n] (to 32); tool frame n is TOOL_DATA[n] (to 16). The
-// controller expects the file NAME.src.
+// User frame 0 is $NULLFRAME, n is BASE_DATA[n] (to 32), T_robot_user is an aggregate; tool frame n
+// is TOOL_DATA[n] (to 16). The controller expects the file NAME.src.
 // Throws InputError for a number outside of these or a name longer than 24 characters or reserved.
 [[nodiscard]] std::string krl(const RobotProgram& program);
 

@@ -57,6 +57,11 @@ std::string path_text(const StrokesFile& strokes, const ProgramSettings& setting
                       ProgramFormat format) {
   if (format == ProgramFormat::csv) return path_csv(strokes.path);
   if (format == ProgramFormat::json) return strokes_json(strokes);
+  if (settings.T_robot_user && settings.user_frame != 0 && format != ProgramFormat::ls) {
+    throw InputError(
+        "number of the user frame " + std::to_string(settings.user_frame) +
+        " besides a drawn frame, which the program defines; expected 0, or the format ls");
+  }
   const RobotProgram program = robot_program(strokes.path, settings);
   switch (format) {
     case ProgramFormat::krl:

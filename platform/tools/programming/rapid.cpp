@@ -7,28 +7,37 @@
 namespace glint {
 namespace {
 
+// The last is the module's own.
 constexpr std::string_view k_rapid_words[] = {
-    "ALIAS",     "AND",     "BACKWARD",  "CASE",    "CONNECT",  "CONST",    "DEFAULT",
-    "DIV",       "DO",      "ELSE",      "ELSEIF",  "ENDFOR",   "ENDFUNC",  "ENDIF",
-    "ENDMODULE", "ENDPROC", "ENDRECORD", "ENDTEST", "ENDTRAP",  "ENDWHILE", "ERROR",
-    "EXIT",      "FALSE",   "FOR",       "FROM",    "FUNC",     "GOTO",     "IF",
-    "INOUT",     "LOCAL",   "MOD",       "MODULE",  "NOSTEPIN", "NOT",      "NOVIEW",
-    "OR",        "PERS",    "PROC",      "RAISE",   "READONLY", "RECORD",   "RETRY",
-    "RETURN",    "STEP",    "SYSMODULE", "TEST",    "THEN",     "TO",       "TRAP",
-    "TRUE",      "TRYNEXT", "UNDO",      "VAR",     "VIEWONLY", "WHILE",    "WITH",
-    "XOR"};
+    "ALIAS",     "AND",      "BACKWARD",  "CASE",    "CONNECT",  "CONST",    "DEFAULT",
+    "DIV",       "DO",       "ELSE",      "ELSEIF",  "ENDFOR",   "ENDFUNC",  "ENDIF",
+    "ENDMODULE", "ENDPROC",  "ENDRECORD", "ENDTEST", "ENDTRAP",  "ENDWHILE", "ERROR",
+    "EXIT",      "FALSE",    "FOR",       "FROM",    "FUNC",     "GOTO",     "IF",
+    "INOUT",     "LOCAL",    "MOD",       "MODULE",  "NOSTEPIN", "NOT",      "NOVIEW",
+    "OR",        "PERS",     "PROC",      "RAISE",   "READONLY", "RECORD",   "RETRY",
+    "RETURN",    "STEP",     "SYSMODULE", "TEST",    "THEN",     "TO",       "TRAP",
+    "TRUE",      "TRYNEXT",  "UNDO",      "VAR",     "VIEWONLY", "WHILE",    "WITH",
+    "XOR",       "PEN_FRAME"};
 constexpr double k_acceleration_min_m_s2 = 0.1;  // PathAccLim
 
 std::string millimetres(double metres, int digits) { return fixed_text(1e3 * metres, digits); }
 
-// The last two parts, configuration and external axes, are unknown and unused.
-std::string target(const Pose& pose) {
+std::string pose_data(const Pose& pose) {
   const Vector3& t = pose.translation;
   const Quaternion& q = pose.rotation;
   const auto part = [](double number) { return fixed_text(number, 8); };
-  return "[[" + millimetres(t.x(), 4) + ',' + millimetres(t.y(), 4) + ',' + millimetres(t.z(), 4) +
-         "],[" + part(q.w()) + ',' + part(q.x()) + ',' + part(q.y()) + ',' + part(q.z()) +
-         "],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+  return '[' + millimetres(t.x(), 4) + ',' + millimetres(t.y(), 4) + ',' + millimetres(t.z(), 4) +
+         "],[" + part(q.w()) + ',' + part(q.x()) + ',' + part(q.y()) + ',' + part(q.z()) + ']';
+}
+
+// The last two parts, configuration and external axes, are unknown and unused.
+std::string target(const Pose& pose) {
+  return '[' + pose_data(pose) + ",[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+}
+
+// Fixed in the room, not moved by another unit; the object's frame is the user frame.
+std::string work_object(const Pose& T_robot_user) {
+  return "[FALSE,TRUE,\"\",[" + pose_data(T_robot_user) + "],[[0,0,0],[1,0,0,0]]]";
 }
 
 // Rotation in deg/s and external axes as in the controller's predefined speeds.
@@ -72,6 +81,9 @@ std::string rapid(const RobotProgram& program) {
   const auto constant = [&](const char* type, const std::string& name, const std::string& value) {
     text += std::string("  LOCAL CONST ") + type + ' ' + name + ":=" + value + ";\n";
   };
+  if (program.T_robot_user) {
+    text += "  LOCAL PERS wobjdata pen_frame:=" + work_object(*program.T_robot_user) + ";\n";
+  }
   for (const double m_s : speeds.sorted) {
     constant("speeddata", "speed" + speeds.number_of(m_s), speed_data(m_s));
   }
@@ -87,8 +99,9 @@ std::string rapid(const RobotProgram& program) {
   text += "  PROC run_" + program.name +
           "()\n    ConfL \\Off;\n    PathAccLim TRUE\\AccMax:=" + limit +
           ",TRUE\\DecelMax:=" + limit + ";\n";
-  const std::string frames = ",tool" + std::to_string(program.tool_frame) + "\\WObj:=wobj" +
-                             std::to_string(program.user_frame) + ";\n";
+  const std::string frames =
+      ",tool" + std::to_string(program.tool_frame) + "\\WObj:=" +
+      (program.T_robot_user ? "pen_frame" : "wobj" + std::to_string(program.user_frame)) + ";\n";
   for (std::size_t i = 0; i < program.moves.size(); ++i) {
     const RobotMove& move = program.moves[i];
     if (!move.comment.empty()) text += "    ! " + move.comment + '\n';

@@ -13,7 +13,8 @@
 namespace glint {
 
 // Module NAME with the procedure run_NAME. User frame n is the work object wobjN, tool frame n the
-// tool toolN; both are the controller's own, and 0 is its base and its flange.
+// tool toolN; both are the controller's own, and 0 is its base and its flange. T_robot_user is the
+// module's own work object pen_frame.
 // Throws InputError for a name that is reserved or longer than 28 characters (an identifier has at
 // most 32), or an acceleration below 0.1 m/s^2.
 [[nodiscard]] std::string rapid(const RobotProgram& program);

@@ -5,6 +5,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
+#include "platform/tools/programming/program_text.hpp"
 
 namespace glint {
 namespace {
@@ -40,11 +41,22 @@ std::string ascii(const std::string& untrusted) {
   return clean;
 }
 
+// With digits for 1 um at 4 m from its origin.
+std::string user_frame_text(const Pose& T_robot_user) {
+  const EulerAngles angles = euler_angles(T_robot_user.rotation);
+  const auto mm = [&](int axis) { return fixed_text(1e3 * T_robot_user.translation[axis], 4); };
+  const auto degrees = [](double angle) { return fixed_text(angle, 7); };
+  return "User frame in the robot's base: X " + mm(0) + " Y " + mm(1) + " Z " + mm(2) + " mm, W " +
+         degrees(angles.x_deg) + " P " + degrees(angles.y_deg) + " R " + degrees(angles.z_deg) +
+         " deg about the fixed axes x, y, z.";
+}
+
 std::vector<std::string> header_of(const DrawnPath& path, const ProgramSettings& settings) {
   std::vector<std::string> header{"Drawn with a tracked pen: " + std::to_string(path.size()) +
                                   " elements, " + std::to_string(point_count(path)) + " points."};
   if (!settings.recording.empty()) header.push_back("Recording: " + settings.recording);
   header.insert(header.end(), settings.checks.begin(), settings.checks.end());
+  if (settings.T_robot_user) header.push_back(user_frame_text(*settings.T_robot_user));
   header.emplace_back("Set the tool centre point first; test slowly and in simulation.");
   for (std::string& line : header) line = ascii(line);
   return header;
@@ -75,9 +87,13 @@ double blend_between(const RobotMove& before, const RobotMove& move, const Robot
 RobotProgram robot_program(const DrawnPath& path, const ProgramSettings& settings) {
   check(settings);
   check_program(point_count(path) > 0, "no point in the path; expected one or more");
-  RobotProgram program{
-      settings.name,       header_of(path, settings), {}, settings.acceleration_m_s2,
-      settings.user_frame, settings.tool_frame};
+  RobotProgram program{settings.name,
+                       header_of(path, settings),
+                       {},
+                       settings.acceleration_m_s2,
+                       settings.T_robot_user,
+                       settings.user_frame,
+                       settings.tool_frame};
   std::vector<bool> stops;
   std::size_t number = 0;
   for (const PathElement& element : path) {
@@ -102,6 +118,12 @@ RobotProgram robot_program(const DrawnPath& path, const ProgramSettings& setting
     if (stops[i]) continue;
     program.moves[i].blend_m = blend_between(program.moves[i - 1], program.moves[i],
                                              program.moves[i + 1], settings.blend_m);
+  }
+  if (!settings.T_robot_user) return program;
+  const Pose T_user_robot = settings.T_robot_user->inverse();
+  for (RobotMove& move : program.moves) {
+    move.pose = T_user_robot * move.pose;
+    if (move.via) move.via = T_user_robot * *move.via;
   }
   return program;
 }

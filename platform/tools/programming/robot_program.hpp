@@ -22,7 +22,11 @@ struct ProgramSettings {
   // Lines of the header that state what was checked.
   std::vector<std::string> checks{
       "NOT CHECKED: reachability, joint limits, singularities, collisions."};
-  int user_frame = 0;  // the controller's number of the path's frame; 0: its base
+  // The moves are written in this frame, which the program defines or states; empty: in the
+  // robot's.
+  std::optional<Pose> T_robot_user{};
+  // The controller's number of the moves' frame; 0: its base. With T_robot_user only LS has one.
+  int user_frame = 0;
   int tool_frame = 1;  // the controller's number of the tip's frame
   // Lines and arcs of strokes become one move each, or two for more than half a circle; empty: a
   // move to each point.
@@ -32,7 +36,7 @@ struct ProgramSettings {
 enum class MoveKind : std::uint8_t { travel, along_stroke };
 
 struct RobotMove {
-  Pose pose;  // T_robot_tip, unit quaternion
+  Pose pose;  // of the tip in the user frame, unit quaternion
   MoveKind kind = MoveKind::travel;
   std::optional<Pose> via;  // a circular move through it; else a linear one
   double speed_m_s = 0;
@@ -45,6 +49,7 @@ struct RobotProgram {
   std::vector<std::string> header;
   std::vector<RobotMove> moves;  // one or more
   double acceleration_m_s2 = 0;
+  std::optional<Pose> T_robot_user;  // empty: the moves are in the robot's frame
   int user_frame = 0;
   int tool_frame = 0;
 };

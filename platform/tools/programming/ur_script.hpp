@@ -12,7 +12,8 @@
 
 namespace glint {
 
-// The program does not select frames: URScript numbers none. Throws InputError for a reserved name.
+// The program selects no frames: URScript numbers none. With T_robot_user the moves are pose_trans
+// of pen_frame. Throws InputError for a reserved name.
 [[nodiscard]] std::string ur_script(const RobotProgram& program);
 
 }  // namespace glint

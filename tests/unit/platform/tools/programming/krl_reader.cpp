@@ -54,7 +54,12 @@ ReadProgram read_krl(const std::string& text) {
       for (const char* token : {"(", "#", "INITMOV", ",", "0", ")"}) in.expect(token);
     } else if (in.accept("$BASE")) {
       in.expect("=");
-      program.user_frame = krl_reader::frame(in, "BASE_DATA");
+      if (in.next_is("{")) {
+        const ReadMove base = krl_reader::target(in);
+        program.frame = ReadFrame{base.position_m, base.rotation};
+      } else {
+        program.user_frame = krl_reader::frame(in, "BASE_DATA");
+      }
     } else if (in.accept("$TOOL")) {
       in.expect("=");
       program.tool_frame = krl_reader::frame(in, "TOOL_DATA");

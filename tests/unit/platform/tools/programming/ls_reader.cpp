@@ -88,6 +88,28 @@ Position position(Scanner& in) {
   return read;
 }
 
+// The pose that the remarks state for UFRAME: X Y Z mm, W P R deg.
+std::optional<ReadFrame> stated_frame(const ReadProgram& program) {
+  std::string remarks;
+  for (const std::string& remark : program.comments) remarks += remark + ' ';
+  const std::string mark = "User frame in the robot's base:";
+  const auto at = remarks.find(mark);
+  if (at == std::string::npos) return {};
+  Scanner in(std::string_view(remarks).substr(at + mark.size()), true);
+  double value[6] = {};
+  constexpr std::string_view k_names[] = {"X", "Y", "Z", "W", "P", "R"};
+  for (int i = 0; i < 6; ++i) {
+    in.expect(k_names[i]);
+    value[i] = in.number();
+    if (i == 2) {
+      for (const char* token : {"mm", ","}) in.expect(token);
+    }
+  }
+  in.expect("deg");
+  return ReadFrame{Eigen::Vector3d(value[0], value[1], value[2]) / 1000,
+                   turned(2, value[5]) * turned(1, value[4]) * turned(0, value[3])};
+}
+
 struct Instruction {
   int via = 0;  // of a circular move
   int position = 0;
@@ -160,6 +182,7 @@ ReadProgram read_ls(const std::string& text) {
     }
     in.expect("\n");
   }
+  program.frame = ls_reader::stated_frame(program);
   if (line != lines) in.fail("LINE_COUNT " + std::to_string(line));
   in.expect("\n");
   std::map<int, ls_reader::Position> positions;

@@ -116,7 +116,14 @@ TEST(PostProcessors, AreReadBackTo1MicrometreAnd1MillidegreeOn30Strokes) {
   }
 }
 
-// Strokes of a line and an arc: the circular moves of each language are those of the program.
+// A position of the program in its frame, or in the base.
+Vector3 in_base(const test::ReadProgram& program, const Vector3& position_m) {
+  if (!program.frame) return position_m;
+  return program.frame->rotation * position_m + program.frame->position_m;
+}
+
+// Strokes of a line and an arc: the circular moves of each language are those of the program, in a
+// user frame, too.
 TEST(PostProcessors, CircularMovesAreReadBack) {
   test::Random random(31);
   DrawnPath path;
@@ -136,20 +143,67 @@ TEST(PostProcessors, CircularMovesAreReadBack) {
   settings.shapes.emplace();
   const RobotProgram program = robot_program(path, settings);
   EXPECT_LT(program.moves.size(), 60u);
-  for (const Dialect& dialect : k_dialects) {
-    SCOPED_TRACE(dialect.name);
+  for (std::size_t n = 0; n < 2 * std::size(k_dialects); ++n) {
+    const Dialect& dialect = k_dialects[n / 2];
+    const bool framed = n % 2 == 1;
+    SCOPED_TRACE(std::string(dialect.name) + (framed ? " in a user frame" : ""));
+    settings.T_robot_user.reset();
+    if (framed) settings.T_robot_user = Pose{random.rotation(), random.in_box(1)};
+    settings.user_frame = framed && dialect.format != ProgramFormat::ls ? 0 : 3;
     const test::ReadProgram read = dialect.read(path_text({path}, settings, dialect.format));
+    ASSERT_EQ(read.frame.has_value(), framed);
     ASSERT_EQ(read.moves.size(), program.moves.size());
     int circular = 0;
     for (std::size_t i = 0; i < read.moves.size(); ++i) {
       const RobotMove& move = program.moves[i];
-      EXPECT_LT((read.moves[i].position_m - move.pose.translation).norm(), 1e-6);
+      EXPECT_LT((in_base(read, read.moves[i].position_m) - move.pose.translation).norm(), 1e-6);
       ASSERT_EQ(read.moves[i].circular, move.via.has_value());
       if (!move.via) continue;
       ++circular;
-      EXPECT_LT((read.moves[i].via_m - move.via->translation).norm(), 1e-6);
+      EXPECT_LT((in_base(read, read.moves[i].via_m) - move.via->translation).norm(), 1e-6);
     }
     EXPECT_GE(circular, 10);
+  }
+}
+
+// The moves are in the frame; the frame that the program defines, or states, takes them to the
+// base.
+TEST(PostProcessors, MovesInAUserFrameAreThoseInTheBaseTo1MicrometreAnd1Millidegree) {
+  for (const std::uint64_t random_seed : {17u, 2203u, 70001u}) {
+    test::Random random(random_seed);
+    const DrawnPath path = thirty_strokes(random_seed);
+    for (const Dialect& dialect : k_dialects) {
+      SCOPED_TRACE(dialect.name);
+      ProgramSettings settings = sample_settings();
+      settings.user_frame = dialect.format == ProgramFormat::ls ? 3 : 0;
+      const RobotProgram program = robot_program(path, settings);
+      settings.T_robot_user = Pose{orientation(random, random.below(3)), random.in_box(2)};
+      const test::ReadProgram read = dialect.read(path_text({path}, settings, dialect.format));
+      ASSERT_TRUE(read.frame);
+      ASSERT_EQ(read.moves.size(), program.moves.size());
+      double worst_m = 0, worst_deg = 0, nearest_m = 1e9;
+      for (std::size_t i = 0; i < read.moves.size(); ++i) {
+        const Pose& pose = program.moves[i].pose;
+        const Vector3 at = in_base(read, read.moves[i].position_m);
+        worst_m = std::max(worst_m, (at - pose.translation).norm());
+        worst_deg =
+            std::max(worst_deg, degrees_between(read.frame->rotation * read.moves[i].rotation,
+                                                pose.rotation.toRotationMatrix()));
+        nearest_m = std::min(nearest_m, (read.moves[i].position_m - pose.translation).norm());
+        EXPECT_NEAR(read.moves[i].blend_m, stated_blend(dialect, program.moves[i].blend_m), 1e-9);
+      }
+      EXPECT_LT(worst_m, 1e-6);
+      EXPECT_LT(worst_deg, 1e-3);
+      EXPECT_GT(nearest_m, 1e-3);  // not written in the base
+      const Pose& frame = *settings.T_robot_user;
+      EXPECT_LT((read.frame->position_m - frame.translation).norm(), 1e-6);
+      EXPECT_LT(degrees_between(read.frame->rotation, frame.rotation.toRotationMatrix()), 1e-5);
+      std::string comments;
+      for (const std::string& line : read.comments) comments += line + ' ';
+      EXPECT_NE(comments.find("User frame in the robot's base: X "), std::string::npos);
+      std::printf("%-8s in a user frame: %.3f um, %.6f deg\n", dialect.name, 1e6 * worst_m,
+                  worst_deg);
+    }
   }
 }
 
@@ -274,6 +328,15 @@ TEST(PostProcessors, RefuseWhatTheControllerWouldRefuse) {
             "ls: speed in mm/s is 2500; expected 1 to 2000");
   EXPECT_EQ(message(rapid, [](auto& s) { s.acceleration_m_s2 = 0.05; }),
             "rapid: acceleration is 0.05; expected 0.1 to 1000");
+  EXPECT_EQ(message(ls, [](auto& s) { s.T_robot_user = Pose{}; }),
+            "ls: user frame is 0; expected 1 to 9");
+  EXPECT_EQ(message(krl,
+                    [](auto& s) {
+                      s.T_robot_user = Pose{};
+                      s.user_frame = 2;
+                    }),
+            "number of the user frame 2 besides a drawn frame, which the program defines; expected "
+            "0, or the format ls");
   for (const Dialect& dialect : k_dialects) {
     EXPECT_EQ(refusal({}, {}, dialect.format),
               "robot program: no point in the path; expected one or more");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -25,8 +26,15 @@ struct ReadMove {
   bool along_stroke = false;  // URScript only: the others have one linear move
 };
 
+// A user frame in the base, as the program defines it or, in LS, states it.
+struct ReadFrame {
+  Eigen::Vector3d position_m;
+  Eigen::Matrix3d rotation;
+};
+
 struct ReadProgram {
   std::string name;
+  std::optional<ReadFrame> frame;  // of the moves; empty: the base
   int user_frame = -1, tool_frame = -1;
   double acceleration_m_s2 = -1;
   std::vector<ReadMove> moves;
@@ -78,6 +86,12 @@ class Scanner {
     if (end < text_.size() && in_word(token.back()) && in_word(text_[end])) return false;
     at_ = end;
     return true;
+  }
+  [[nodiscard]] bool next_is(std::string_view token) {
+    const std::size_t begin = at_;
+    const bool is = accept(token);
+    at_ = begin;
+    return is;
   }
   void expect(std::string_view token) {
     if (!accept(token)) fail(token == "\n" ? "the line's end" : "'" + std::string(token) + "'");

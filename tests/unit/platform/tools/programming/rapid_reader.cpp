@@ -54,7 +54,25 @@ struct Module {
   ReadProgram program;
 };
 
+// wobjdata: robhold, ufprog, ufmec, uframe, oframe.
+void work_object(Scanner& in, ReadProgram& program) {
+  for (const char* token :
+       {"wobjdata", "pen_frame", ":=", "[", "FALSE", ",", "TRUE", ",", "\"\"", ",", "["})
+    in.expect(token);
+  const auto position = numbers<3>(in);
+  in.expect(",");
+  const auto quaternion = numbers<4>(in);
+  for (const char* token : {"]", ",", "["}) in.expect(token);
+  if (numbers<3>(in) != std::array<double, 3>{}) in.fail("an object frame at the user frame");
+  in.expect(",");
+  if (numbers<4>(in) != std::array<double, 4>{1}) in.fail("an object frame at the user frame");
+  for (const char* token : {"]", "]", ";"}) in.expect(token);
+  program.frame = ReadFrame{Eigen::Vector3d(position[0], position[1], position[2]) / 1000,
+                            rotation_of(quaternion, in)};
+}
+
 void constant(Scanner& in, Module& module) {
+  if (in.accept("PERS")) return work_object(in, module.program);
   in.expect("CONST");
   const std::string type = identifier(in), name = identifier(in);
   in.expect(":=");
@@ -118,7 +136,12 @@ void read_move(Scanner& in, bool circular, Module& module) {
   in.expect("\\");
   in.expect("WObj");
   in.expect(":=");
-  module.program.user_frame = frame_number(identifier(in), "wobj", in);
+  const std::string object = identifier(in);
+  if (!module.program.frame) {
+    module.program.user_frame = frame_number(object, "wobj", in);
+  } else if (object != "pen_frame") {
+    in.fail("the module's work object");
+  }
   in.expect(";");
   module.program.moves.push_back(move);
 }

@@ -1,6 +1,7 @@
 // URScript. Syntax: Universal Robots, The URScript Programming Language: def NAME(): .. end,
 // comments from '#' to the line's end, movel and movep with a pose, movec with two poses (through,
-// to): p[x,y,z,rx,ry,rz] (m, rotation vector), a [m/s^2], v [m/s], r [m].
+// to): p[x,y,z,rx,ry,rz] (m, rotation vector), a [m/s^2], v [m/s], r [m]; local NAME = pose;
+// pose_trans(from, from_to) is the product of both.
 #include "tests/unit/platform/tools/programming/program_reader.hpp"
 
 namespace glint::test {
@@ -36,14 +37,22 @@ ReadMove pose(Scanner& in) {
   return read;
 }
 
+ReadMove target(Scanner& in, const ReadProgram& program) {
+  if (!program.frame) return pose(in);
+  for (const char* token : {"pose_trans", "(", "pen_frame", ","}) in.expect(token);
+  const ReadMove read = pose(in);
+  in.expect(")");
+  return read;
+}
+
 ReadMove move(Scanner& in, bool circular, ReadProgram& program) {
   in.expect("(");
   ReadMove via;
   if (circular) {
-    via = pose(in);
+    via = target(in, program);
     in.expect(",");
   }
-  ReadMove read = pose(in);
+  ReadMove read = target(in, program);
   read.circular = circular;
   if (circular) read.via_m = via.position_m;
   program.acceleration_m_s2 = argument(in, "a");
@@ -69,6 +78,12 @@ ReadProgram read_urscript(const std::string& text) {
   in.expect("def");
   program.name = in.word();
   for (const char* token : {"(", ")", ":", "\n"}) in.expect(token);
+  if (in.accept("local")) {
+    for (const char* token : {"pen_frame", "="}) in.expect(token);
+    const ReadMove frame = urscript_reader::pose(in);
+    program.frame = ReadFrame{frame.position_m, frame.rotation};
+    in.expect("\n");
+  }
   while (!in.accept("end")) {
     if (comment()) continue;
     const bool circular = in.accept("movec"), along = in.accept("movep");
