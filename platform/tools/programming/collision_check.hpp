@@ -6,7 +6,9 @@
 // another alignment of Eigen's types, and a fault in it ends that program, not this one.
 //
 // A link that no joint moves is not tested with the map: it stands where it was built. A voxel
-// within a mesh, that its surface does not touch, is not found.
+// within a mesh, that its surface does not touch, is not found: counting a ray's crossings needs
+// closed meshes, which URDF meshes often are not, and an open one would fail paths that are free. A
+// voxel larger than the step is found where it crosses the surface on the way in.
 #pragma once
 
 #include <string>

@@ -249,6 +249,41 @@ TEST(CollisionCheck, NamesPointAndLinkAndLeavesOutLinksThatMayTouch) {
             "move to stroke 1, point 2: link l6 touches the map");
 }
 
+// Shapes of 0.2 m and voxels of 0.02 m at their centres, away from the surfaces.
+TEST(CollisionCheck, FindsAVoxelInsideASolidAndOfAMeshOnlyAtItsSurface) {
+  const auto link = [](const std::string& name, const std::string& shape) {
+    return "<link name='" + name + "'><collision><geometry>" + shape +
+           "</geometry></collision></link>";
+  };
+  const std::string arm_shapes = "<link name='l1'/>" + link("l2", "<box size='0.2 0.2 0.2'/>") +
+                                 link("l3", "<cylinder radius='0.1' length='0.2'/>") +
+                                 "<link name='l4'/><link name='l5'/>";
+  const Joints q{0.3, 0.6, 1.2, 0.3, 0.8, 0.2};
+  KDL::JntArray joints(6);
+  for (unsigned i = 0; i < 6; ++i) joints(i) = q[i];
+  PathMotion motion;
+  motion.samples.push_back({1, 1, true, joints});
+  const ArmLinks links(joints);
+  VoxelMap map;
+  for (const Vector3& centre : {links.upper.translation, links.fore.translation,
+                                Vector3(links.tip * Vector3(0, 0, -Arm::hand))})
+    map.add(centre);
+  const auto found = [&](const std::string& shape) {
+    const Robot robot(Arm(), arm_shapes + link("l6", shape));
+    robot.files.write("cube.stl", test::stl_bytes(box_surface(Vector3::Constant(0.2))));
+    CollisionSettings settings;
+    settings.octomap = robot.files.write("map.bt", map.bytes());
+    settings.T_map_robot = map.T_map_robot;
+    return found_in(check_collisions(motion, load_robot({robot.urdf, {}}), robot.chain, settings));
+  };
+  const std::string mesh = "<mesh filename='cube.stl'/>";
+  const Found inside{{1, 1, "l2"}, {1, 1, "l3"}}, all{{1, 1, "l2"}, {1, 1, "l3"}, {1, 1, "l6"}};
+  EXPECT_EQ(found("<sphere radius='0.1'/>"), all);
+  EXPECT_EQ(found(mesh), inside);
+  map.add(links.tip.translation);  // on a face of the cube
+  EXPECT_EQ(found(mesh), all);
+}
+
 TEST(CollisionCheck, FindsLinksThatTouchEachOther) {
   const std::string ball = "<collision><geometry><sphere radius='RADIUS'/></geometry></collision>";
   const auto link = [&](const std::string& name, const std::string& radius) {
