@@ -110,6 +110,23 @@ void FrameExaminer::add_candidates(ExaminedFrame& examined) {
   }
 }
 
+// Of a component that is no blob; 0: it has none.
+double FrameExaminer::range_of(const Frame& frame, const Component& component,
+                               const ExaminedRegion& region) const {
+  const BackProject& depth = tracker_->node<BackProject>();
+  Blob blob;
+  blob.centroid_px = region.centroid_px;
+  blob.area_px = component.area_px;
+  blob.x0 = component.x0;
+  blob.y0 = component.y0;
+  blob.x1 = component.x1;
+  blob.y1 = component.y1;
+  Marker marker;
+  const bool measured =
+      measure_marker(frame, blob, 0, depth.camera, {}, depth.depth, depth.nominal, marker);
+  return measured ? marker.surface_range_m : 0;
+}
+
 // Runs the blob search again, for the components that the tracker's own search discards.
 void FrameExaminer::add_refused(const Frame& frame, ExaminedFrame& examined) {
   std::array<const Runs*, k_row_bands> bands;
@@ -139,21 +156,13 @@ void FrameExaminer::add_refused(const Frame& frame, ExaminedFrame& examined) {
     region.reason = refusal_of(frame, component, node.settings);
     counts.too_large += region.reason == "too_large" ? 1 : 0;
     if (region.reason == "too_small") {
-      ++counts.too_small;
       counts.touching_edge += touches_edge(frame, region.box) ? 1 : 0;
-      const BackProject& depth = tracker_->node<BackProject>();
-      Blob blob;
-      blob.centroid_px = region.centroid_px;
-      blob.area_px = component.area_px;
-      blob.x0 = component.x0;
-      blob.y0 = component.y0;
-      blob.x1 = component.x1;
-      blob.y1 = component.y1;
-      Marker marker;
-      if (measure_marker(frame, blob, 0, depth.camera, {}, depth.depth, depth.nominal, marker)) {
-        region.range_m = marker.surface_range_m;
-        counts.too_small_range_m = std::max(counts.too_small_range_m, region.range_m);
-      }
+      region.range_m = range_of(frame, component, region);
+      // Within the range a marker is large enough: a small spot there is none.
+      const bool may_be_far = region.range_m > 0 ? region.range_m > 0.9 * cell_.camera.range_max_m
+                                                 : component.area_px > 1;
+      counts.too_small += may_be_far ? 1 : 0;
+      if (may_be_far) counts.too_small_range_m = std::max(counts.too_small_range_m, region.range_m);
     }
     examined.regions.push_back(std::move(region));
   }

@@ -31,6 +31,7 @@ struct ExaminedRegion {
 // Numbers of regions; touching_edge counts candidates and regions that are too small.
 struct RegionCounts {
   int candidates = 0, no_depth = 0, too_small = 0, too_large = 0, touching_edge = 0;
+  // too_small: those that may be markers beyond the range.
   double too_small_range_m = 0;  // of the farthest of them; 0: none has a range
 };
 
@@ -56,6 +57,8 @@ class FrameExaminer {
 
  private:
   void add_candidates(ExaminedFrame& examined);
+  [[nodiscard]] double range_of(const Frame& frame, const Component& component,
+                                const ExaminedRegion& region) const;
   void add_refused(const Frame& frame, ExaminedFrame& examined);
 
   const Cell& cell_;

@@ -22,6 +22,8 @@ MESSAGES = {
         "Vector3": "float64 x\nfloat64 y\nfloat64 z\n",
         "Quaternion": "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n",
         "Pose": "Point position\nQuaternion orientation\n",
+        "PoseWithCovariance": "Pose pose\nfloat64[36] covariance\n",
+        "PoseWithCovarianceStamped": "std_msgs/Header header\nPoseWithCovariance pose\n",
     },
 }
 GENERATORS = ("rosidl_adapter", "rosidl_cmake", "rosidl_generator_c", "rosidl_generator_cpp")
