@@ -28,14 +28,14 @@ static int32_t signed_signal(const uint8_t* data, int first_bit, int width) {
 /* CRC-8 SAE J1850, continued from `crc`, without inversion. */
 static uint8_t crc8(uint8_t crc, uint8_t byte) {
   crc ^= byte;
-  for (int i = 0; i < 8; ++i) crc = (uint8_t)(crc << 1 ^ (crc & 0x80U ? 0x1DU : 0U));
+  for (int i = 0; i < 8; ++i) crc = (uint8_t)((unsigned)crc << 1 ^ (crc & 0x80U ? 0x1DU : 0U));
   return crc;
 }
 
 /* CRC-16 CCITT-FALSE, likewise. */
 static uint16_t crc16(uint16_t crc, uint8_t byte) {
   crc = (uint16_t)(crc ^ (uint16_t)byte << 8);
-  for (int i = 0; i < 8; ++i) crc = (uint16_t)(crc << 1 ^ (crc & 0x8000U ? 0x1021U : 0U));
+  for (int i = 0; i < 8; ++i) crc = (uint16_t)((unsigned)crc << 1 ^ (crc & 0x8000U ? 0x1021U : 0U));
   return crc;
 }
 
