@@ -70,7 +70,8 @@ struct Place {
     return value.get<std::string>();
   }
   [[nodiscard]] std::int64_t nanoseconds() const {
-    require(value.is_number_integer() && std::abs(value.get<double>()) < 1.0 * k_time_max_ns,
+    require(value.is_number_integer() &&
+                std::abs(value.get<double>()) < static_cast<double>(k_time_max_ns),
             "whole nanoseconds");
     return value.get<std::int64_t>();
   }
