@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -13,6 +14,7 @@
 #include "platform/tools/mapping/occupancy.hpp"
 #include "platform/tools/robot/primitives.hpp"
 #include "tests/unit/platform/tools/programming/arm_strokes.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -150,7 +152,9 @@ struct CollidingArm : Robot {
 TEST(CollisionCheck, FindsEveryPlantedPointOf30StrokesAndNoOther) {
   const Arm arm;
   const CollidingArm robot;
-  for (const std::uint64_t random_seed : {3u, 512u}) {
+  constexpr std::array<std::uint64_t, 2> k_random_seeds{3, 512};
+  for (int i = 0; i < test::repetitions(2, 1); ++i) {
+    const std::uint64_t random_seed = k_random_seeds[static_cast<std::size_t>(i)];
     DrawnPath path = strokes_of(arm, random_seed);
     test::Random random(random_seed + 9);
     const FollowedPath clean = follow_path(path, robot.chain, {});
@@ -199,7 +203,8 @@ TEST(CollisionCheck, EqualsDistancesInClosedForm) {
   test::Random random(77);
   VoxelMap map;
   PathMotion motion;
-  for (std::size_t i = 1; i <= 1500; ++i) {
+  const auto samples = static_cast<std::size_t>(test::repetitions(1500, 150));
+  for (std::size_t i = 1; i <= samples; ++i) {
     KDL::JntArray joints(6);
     for (unsigned j = 0; j < 6; ++j) joints(j) = random.within(arm.low[j], arm.high[j]);
     motion.samples.push_back({i, 1, true, joints});
@@ -210,8 +215,8 @@ TEST(CollisionCheck, EqualsDistancesInClosedForm) {
   settings.T_map_robot = map.T_map_robot;
   const Found found = found_in(check_collisions(motion, robot.model, robot.chain, settings));
   EXPECT_EQ(found, judged(motion, map.voxels));
-  EXPECT_GT(found.size(), 500u);
-  EXPECT_LT(found.size(), 3500u);
+  EXPECT_GT(found.size(), static_cast<std::size_t>(test::repetitions(500, 5)));
+  EXPECT_LT(found.size(), 7 * samples / 3);
 }
 
 TEST(CollisionCheck, NamesPointAndLinkAndLeavesOutLinksThatMayTouch) {
