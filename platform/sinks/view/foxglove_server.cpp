@@ -1,24 +1,21 @@
 #include "platform/sinks/view/foxglove_server.hpp"
 
 #include <libwebsockets.h>
-#include <pthread.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "platform/input_error.hpp"
 #include "platform/sinks/view/accepted_origin.hpp"
-#include "platform/sinks/view/free_port.hpp"
 #include "platform/sinks/view/page_reply.hpp"
 #include "platform/sinks/view/view_queue.hpp"
+#include "platform/sinks/view/web_server.hpp"
 
 namespace glint {
 namespace {
@@ -221,39 +218,19 @@ void FoxgloveServer::Body::run() {
 
 FoxgloveServer::FoxgloveServer(const FoxgloveSettings& settings)
     : body_(std::make_unique<Body>(settings)) {
-  lws_set_log_level(0, nullptr);
   static const std::array<lws_protocols, 3> protocols = {
       lws_protocols{"http", &Body::on_request, sizeof(PageReply), 0, 0, nullptr, 0},
       lws_protocols{k_protocol, &Body::on_event, sizeof(Client*), k_fragment_bytes, 0, nullptr, 0},
       lws_protocols{}};
   lws_context_creation_info info{};
-  info.port = settings.port;
-  info.iface = settings.address.c_str();
   info.protocols = protocols.data();
-  info.gid = static_cast<gid_t>(-1);
-  info.uid = static_cast<uid_t>(-1);
   info.user = body_.get();
   info.max_http_header_data = k_headers_bytes_max;
-  // Beside the clients: the listener, the wake-up pipe, and connections that are about to be
-  // refused.
-  info.fd_limit_per_thread = static_cast<unsigned>(settings.clients_max) + 16;
-  info.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
-  if (is_free_port(settings.address, settings.port)) body_->context = lws_create_context(&info);
-  if (body_->context != nullptr) {
-    body_->port = lws_get_vhost_listen_port(lws_get_vhost_by_name(body_->context, "default"));
-  }
-  if (body_->context == nullptr || body_->port <= 0) {
-    if (body_->context != nullptr) lws_context_destroy(body_->context);
-    throw MissingDevice("--view: cannot listen on " + settings.address + " port " +
-                        std::to_string(settings.port) +
-                        "; expected an IPv4 address of this machine and a free port");
-  }
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_BLOCK, &all, &before);  // the new thread handles no signal
-  body_->thread = std::thread([this] { body_->run(); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  pthread_setname_np(body_->thread.native_handle(), "glint_view");
+  const WebServer server =
+      open_web_server(info, "--view", settings.address, settings.port, settings.clients_max);
+  body_->context = server.context;
+  body_->port = server.port;
+  body_->thread = web_server_thread("glint_view", [this] { body_->run(); });
 }
 
 FoxgloveServer::~FoxgloveServer() { close(); }

@@ -41,10 +41,10 @@ TEST(Explanation, OfATrackedToolNamesItsMarkers) {
   now.state = TrackState::measured;
   now.reason = Reason::none;
   now.markers_used = 4;
-  const Explanation told = explain(now);
-  EXPECT_EQ(told.state, "measured");
-  EXPECT_EQ(told.reason, "");
-  EXPECT_EQ(told.text, "Tracked by 4 of 5 markers.");
+  const Explanation explanation = explain(now);
+  EXPECT_EQ(explanation.state, "measured");
+  EXPECT_EQ(explanation.reason, "");
+  EXPECT_EQ(explanation.text, "Tracked by 4 of 5 markers.");
 }
 
 TEST(Explanation, OfTwoMarkersAsksForMore) {
@@ -58,18 +58,18 @@ TEST(Explanation, OfAPredictionStatesItsAge) {
   ExplainedSituation now = lost();
   now.state = TrackState::predicted;
   now.unmeasured_for = milliseconds(120);
-  const Explanation told = explain(now);
-  EXPECT_EQ(told.state, "predicted");
-  EXPECT_EQ(told.reason, "too_few_markers");
-  EXPECT_EQ(told.text,
+  const Explanation explanation = explain(now);
+  EXPECT_EQ(explanation.state, "predicted");
+  EXPECT_EQ(explanation.reason, "too_few_markers");
+  EXPECT_EQ(explanation.text,
             "Predicted for 0.1 s, lost after 0.25 s: no marker is visible. Uncover the markers, or "
             "bring the tool into view and turn it to the camera.");
 }
 
 TEST(Explanation, OfAllMarkersHidden) {
-  const Explanation told = explain(lost());
-  EXPECT_EQ(told.state, "lost");
-  EXPECT_EQ(told.text,
+  const Explanation explanation = explain(lost());
+  EXPECT_EQ(explanation.state, "lost");
+  EXPECT_EQ(explanation.text,
             "Not tracked: no marker is visible. Uncover the markers, or bring the tool into view "
             "and turn it to the camera.");
 }
@@ -91,9 +91,9 @@ TEST(Explanation, OfHiddenMarkersAmongStrayReflections) {
 TEST(Explanation, OfAThresholdThatNoPixelExceeds) {
   ExplainedSituation now = never_found();
   now.regions->threshold = 60000;
-  const Explanation told = explain(now);
-  EXPECT_EQ(told.state, "never_found");
-  EXPECT_EQ(told.text,
+  const Explanation explanation = explain(now);
+  EXPECT_EQ(explanation.state, "never_found");
+  EXPECT_EQ(explanation.text,
             "Not found: no pixel exceeds the threshold of 60000 counts, the brightest has 5000. "
             "Bring the tool into view; if it is, set [camera] threshold below 5000.");
 }
@@ -158,10 +158,10 @@ TEST(Explanation, OfNoFrameAtAll) {
   now.reason = Reason::no_frame_yet;
   now.any_frame = false;
   now.regions.reset();
-  const Explanation told = explain(now);
-  EXPECT_EQ(told.state, "never_found");
-  EXPECT_EQ(told.reason, "no_frame_yet");
-  EXPECT_EQ(told.text,
+  const Explanation explanation = explain(now);
+  EXPECT_EQ(explanation.state, "never_found");
+  EXPECT_EQ(explanation.reason, "no_frame_yet");
+  EXPECT_EQ(explanation.text,
             "Not found: no frame has arrived. Check that the source of the frames runs and is "
             "connected.");
 }
