@@ -20,10 +20,11 @@ constexpr Duration k_peer_wait = milliseconds(5000);  // for the server at the s
 constexpr Duration k_connect_limit = milliseconds(1000);
 constexpr Duration k_attempt_gap = milliseconds(500);   // between two attempts to connect
 constexpr Duration k_silence_max = milliseconds(2000);  // without a byte; then connect again
-constexpr Duration k_gap_max = milliseconds(60'000);    // longer gaps are of another clock
-constexpr int k_stall_gaps = 12;                        // nominal gaps without a packet
-constexpr int k_receptions_max = 64;                    // per reading of the clock
-constexpr std::size_t k_png_bytes_more = 64 << 10;      // of an image that does not compress
+constexpr TcpLimits k_answer_limits{k_connect_limit, k_silence_max};
+constexpr Duration k_gap_max = milliseconds(60'000);  // longer gaps are of another clock
+constexpr int k_stall_gaps = 12;                      // nominal gaps without a packet
+constexpr int k_receptions_max = 64;                  // per reading of the clock
+constexpr std::size_t k_png_bytes_more = 64 << 10;    // of an image that does not compress
 constexpr std::array<std::uint8_t, 1> k_calibration_request = {2}, k_clock_request = {1};
 
 std::size_t pixels_of(const Camera& camera) {
@@ -54,34 +55,13 @@ auto repeated(const TcpPeer& peer, const std::atomic<bool>* stop, const std::str
                       expected);
 }
 
-std::optional<Bytes> downloaded(const TcpPeer& peer, std::span<const std::uint8_t> request,
-                                std::size_t bytes, std::string& why) {
-  const auto connection = tcp_connect(peer, k_connect_limit, request, why);
-  if (!connection) return std::nullopt;
-  Bytes answer(bytes);
-  std::size_t filled = 0;
-  Time last = monotonic_now();
-  while (filled < bytes) {
-    tcp_wait(connection->get(), k_live_poll);
-    const auto got = tcp_receive(connection->get(), std::span(answer).subspan(filled), why);
-    if (got && *got > 0) {
-      filled += *got;
-      last = monotonic_now();
-    } else if (!got || monotonic_now() - last > k_silence_max) {
-      why = "the answer ends after " + std::to_string(filled) + " of " + std::to_string(bytes) +
-            " bytes";
-      return std::nullopt;
-    }
-  }
-  return answer;
-}
-
 // Unix time minus the counter that stamps the frames, by the headset's clock. Empty: the remote
 // configuration does not answer.
 std::optional<Duration> clock_offset(const SourceSettings& source) {
   if (source.clock_port == 0) return std::nullopt;
   std::string why;
-  const auto answer = downloaded(tcp_peer(source.host, source.clock_port), k_clock_request, 8, why);
+  const auto answer = tcp_answer(tcp_peer(source.host, source.clock_port), k_answer_limits,
+                                 k_clock_request, 8, why);
   if (!answer) return std::nullopt;
   const auto file_time_minus_counter = ByteReader(*answer).number<std::uint64_t>();
   if (!is_file_time(file_time_minus_counter)) return std::nullopt;
@@ -148,7 +128,9 @@ std::unique_ptr<Hl2ssSource> Hl2ssSource::open(Cell& cell, LiveSettings live) {
     const std::size_t bytes = hl2ss_calibration_bytes(cell.camera.model, stream.is_ahat);
     calibration = repeated(
         peer, live.stop, std::string("the calibration of hl2ss's ") + stream.name + " stream",
-        [&](std::string& why) { return downloaded(peer, k_calibration_request, bytes, why); });
+        [&](std::string& why) {
+          return tcp_answer(peer, k_answer_limits, k_calibration_request, bytes, why);
+        });
   } else {
     const std::string text = read_file(name, k_data_bytes_max, "hl2ss's calibration of the device");
     calibration.assign(text.begin(), text.end());

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "platform/input_error.hpp"
+#include "platform/runtime/rt/clock.hpp"
 
 namespace glint {
 namespace {
@@ -72,6 +73,29 @@ std::optional<std::size_t> tcp_receive(int socket, std::span<std::uint8_t> to, s
 void tcp_wait(int socket, Duration limit) {
   pollfd waited{socket, POLLIN, 0};
   (void)::poll(&waited, 1, milliseconds_of(limit));
+}
+
+std::optional<std::vector<std::uint8_t>> tcp_answer(const TcpPeer& peer, const TcpLimits& limits,
+                                                    std::span<const std::uint8_t> request,
+                                                    std::size_t bytes, std::string& why) {
+  const auto connection = tcp_connect(peer, limits.connect, request, why);
+  if (!connection) return std::nullopt;
+  std::vector<std::uint8_t> answer(bytes);
+  std::size_t filled = 0;
+  Time last = monotonic_now();
+  while (filled < bytes) {
+    tcp_wait(connection->get(), limits.silence);
+    const auto got = tcp_receive(connection->get(), std::span(answer).subspan(filled), why);
+    if (got && *got > 0) {
+      filled += *got;
+      last = monotonic_now();
+    } else if (!got || monotonic_now() - last > limits.silence) {
+      why = "the answer ends after " + std::to_string(filled) + " of " + std::to_string(bytes) +
+            " bytes";
+      return std::nullopt;
+    }
+  }
+  return answer;
 }
 
 }  // namespace glint

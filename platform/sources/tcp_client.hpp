@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kernels/units.hpp"
 #include "platform/descriptor.hpp"
@@ -36,5 +37,16 @@ struct TcpPeer {
 
 // Waits until bytes have arrived or `limit` is over.
 void tcp_wait(int socket, Duration limit);
+
+struct TcpLimits {
+  Duration connect;
+  Duration silence;  // without a byte
+};
+
+// Connects, sends `request` and receives an answer of `bytes` bytes. Empty on failure; `why` then
+// holds the reason.
+[[nodiscard]] std::optional<std::vector<std::uint8_t>> tcp_answer(
+    const TcpPeer& peer, const TcpLimits& limits, std::span<const std::uint8_t> request,
+    std::size_t bytes, std::string& why);
 
 }  // namespace glint

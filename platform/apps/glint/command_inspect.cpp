@@ -130,8 +130,7 @@ class ExplainedFrames {
     const Frame& frame = arrived.frame;
     explainer_.add_head(arrived.head);
     if (explainer_.examines(frame.arrival)) {
-      const auto pixels = static_cast<std::size_t>(frame.width()) * frame.height();
-      (void)explainer_.add_frame(frame, pixels);
+      (void)explainer_.add_frame(frame);
     } else {
       explainer_.add_arrival(frame.mid_exposure, frame.arrival);
     }

@@ -18,7 +18,7 @@ std::uint16_t pixel_at(const Frame& frame, int x, int y) {
 
 // Finds the brightest pixel and the share of those above the threshold. A frame read from a
 // recording does not state which pixels were recorded: at most the box of those that are not 0.
-void measure_brightness(const Frame& frame, std::size_t searched_px, ExaminedFrame& examined) {
+void measure_brightness(const Frame& frame, ExaminedFrame& examined) {
   std::size_t bright = 0;
   Roi box{frame.width(), frame.height(), 0, 0};
   for (int y = 0; y < frame.height(); ++y) {
@@ -31,11 +31,10 @@ void measure_brightness(const Frame& frame, std::size_t searched_px, ExaminedFra
       bright += pixel > examined.threshold ? 1 : 0;
     }
   }
-  if (bright == 0 || searched_px == 0) return;
+  if (bright == 0) return;
   const auto box_px =
       static_cast<std::size_t>(box.x1 - box.x0) * static_cast<std::size_t>(box.y1 - box.y0);
-  examined.bright_share =
-      static_cast<double>(bright) / static_cast<double>(std::min(searched_px, box_px));
+  examined.bright_share = static_cast<double>(bright) / static_cast<double>(box_px);
 }
 
 Roi box_of(const auto& box) { return {box.x0, box.y0, box.x1, box.y1}; }
@@ -59,7 +58,7 @@ FrameExaminer::FrameExaminer(const Cell& cell) : cell_(cell), tools_(cell.tools)
   configure(cell, *tracker_);
 }
 
-ExaminedFrame FrameExaminer::examine(const Frame& frame, std::size_t searched_px) {
+ExaminedFrame FrameExaminer::examine(const Frame& frame) {
   // A tool with a new identity is searched everywhere.
   ++searches_;
   for (Tool& tool : tools_.items) tool.identity = searches_;
@@ -73,7 +72,7 @@ ExaminedFrame FrameExaminer::examine(const Frame& frame, std::size_t searched_px
   examined.threshold = cell_.camera.threshold;
   if (tracker_->token<FrameStamp>().reason != Reason::none) return examined;
   examined.usable = true;
-  measure_brightness(frame, searched_px, examined);
+  measure_brightness(frame, examined);
   add_candidates(examined);
   add_refused(frame, examined);
   return examined;

@@ -49,8 +49,8 @@ class FrameExaminer {
  public:
   explicit FrameExaminer(const Cell& cell);
 
-  // searched_px: number of the frame's pixels that were recorded; the others are 0.
-  [[nodiscard]] ExaminedFrame examine(const Frame& frame, std::size_t searched_px);
+  // Pixels that were not recorded are 0.
+  [[nodiscard]] ExaminedFrame examine(const Frame& frame);
 
   // As the last call of examine() left it.
   [[nodiscard]] Tracker& tracker() noexcept { return *tracker_; }

@@ -35,10 +35,10 @@ void Explainer::add_refused(Time arrival, Reason reason) noexcept {
 
 bool Explainer::examines(Time arrival) const noexcept { return arrival >= next_examination_; }
 
-const ExaminedFrame& Explainer::add_frame(const Frame& frame, std::size_t searched_px) {
+const ExaminedFrame& Explainer::add_frame(const Frame& frame) {
   add_arrival(frame.mid_exposure, frame.arrival);
   next_examination_ = frame.arrival + k_examination_period;
-  examined_ = examiner_.examine(frame, searched_px);
+  examined_ = examiner_.examine(frame);
   const Estimates& estimates = examiner_.tracker().output<Estimates>();
   for (std::size_t t = 0; t < static_cast<std::size_t>(cell_.tools.count); ++t) {
     ToolState& tool = tools_[t];

@@ -27,8 +27,8 @@ class Explainer {
   void add_head(const HeadPose& head) noexcept { head_ = head; }
   // Returns whether a frame that arrives then is to be examined.
   [[nodiscard]] bool examines(Time arrival) const noexcept;
-  // Examines it; call after the frame's head pose. searched_px: see FrameExaminer.
-  const ExaminedFrame& add_frame(const Frame& frame, std::size_t searched_px);
+  // Examines it; call after the frame's head pose.
+  const ExaminedFrame& add_frame(const Frame& frame);
   // A frame that is not examined.
   void add_arrival(Time mid_exposure, Time arrival) noexcept;
   void add_refused(Time arrival, Reason reason) noexcept;

@@ -60,8 +60,7 @@ void ViewerMessages::add(const FramePatch& patch) {
   }
   const FrameBuffer pixels = frame_of(patch);
   const Frame frame = pixels.view(layout.mid_exposure, layout.arrival, layout.sequence);
-  const ExaminedFrame& examined =
-      explainer_.add_frame(frame, std::size_t{layout.width} * layout.height);
+  const ExaminedFrame& examined = explainer_.add_frame(frame);
   std::vector<Vector3> candidates;
   for (const ExaminedRegion& region : examined.regions) {
     if (region.reason.empty()) candidates.push_back(region.surface_m);
