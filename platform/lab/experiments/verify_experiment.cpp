@@ -36,7 +36,20 @@ constexpr std::array<const char*, 5> k_large_names = {"wrong_range_offset", "wro
                                                       "wrong_principal_point",
                                                       "wrong_tool_geometry", "wrong_head_drift"};
 
-sim::Scenario touching(const Cell& cell, const VerifyDevice& device) {
+// Of a quick experiment: little more than `glint verify` requires.
+sim::TouchSettings touches_of(const CaseOptions& options) {
+  sim::TouchSettings out;
+  if (options.quick) {
+    out.touches = 15;
+    out.hold_s = 1.6;
+    out.move_s = 1;
+    out.rest_s = 20;
+  }
+  return out;
+}
+
+sim::Scenario touching(const Cell& cell, const VerifyDevice& device,
+                       const sim::TouchSettings& touches) {
   sim::Scenario scenario = scenario_of(cell);
   if (device.drawn == Drawn::below_one_sigma) {
     draw_below_one_sigma(cell, device.large, device.seed, scenario);
@@ -48,15 +61,14 @@ sim::Scenario touching(const Cell& cell, const VerifyDevice& device) {
   scenario.timing.slow.clear();
   scenario.occlusions.clear();
   scenario.absences.clear();
-  sim::touch_points({}, device.seed, scenario);
+  sim::touch_points(touches, device.seed, scenario);
   return scenario;
 }
 
 // A rejected recording is neither verdict.
-bool is_verdict(bool agrees, const VerifyDevice& device) {
-  const sim::TouchSettings touches;
+bool is_verdict(bool agrees, const VerifyDevice& device, const sim::TouchSettings& touches) {
   const Cell cell = field_cell(device.seed, touches.duration().seconds());
-  const sim::Simulator simulator(touching(cell, device));
+  const sim::Simulator simulator(touching(cell, device, touches));
   RecordedFrames recorded{"simulated touches", cell, std::make_unique<SimulatedSource>(simulator)};
   try {
     const TipSeries series = observe_tips(recorded, 0);
@@ -72,7 +84,7 @@ ExperimentCase agreeing(const char* name, Drawn drawn, int devices, const CaseOp
   for (int i = 0; i < devices; ++i, step()) {
     const VerifyDevice device{drawn, LargeError::nothing,
                               options.seed + static_cast<std::uint64_t>(i)};
-    wrong += is_verdict(true, device) ? 0 : 1;
+    wrong += is_verdict(true, device, touches_of(options)) ? 0 : 1;
   }
   return {name,
           "glint",
@@ -89,7 +101,7 @@ ExperimentCase disagreeing(int devices, const CaseOptions& options,
     const auto kind = static_cast<std::size_t>(i) % k_large_errors.size();
     const VerifyDevice device{Drawn::below_one_sigma, k_large_errors[kind],
                               options.seed + static_cast<std::uint64_t>(i)};
-    if (is_verdict(false, device)) continue;
+    if (is_verdict(false, device, touches_of(options))) continue;
     wrong[kind] += 1;
     all += 1;
   }

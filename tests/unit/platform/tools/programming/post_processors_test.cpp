@@ -11,6 +11,7 @@
 #include "platform/tools/programming/program_format.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 #include "tests/unit/platform/tools/programming/program_reader.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -127,7 +128,8 @@ Vector3 in_base(const test::ReadProgram& program, const Vector3& position_m) {
 TEST(PostProcessors, CircularMovesAreReadBack) {
   test::Random random(31);
   DrawnPath path;
-  for (int stroke = 0; stroke < 10; ++stroke) {
+  const int strokes = test::repetitions(10, 2);
+  for (int stroke = 0; stroke < strokes; ++stroke) {
     PathElement element{PathKind::stroke, {}};
     const Pose frame{random.rotation(), random.in_box(1)};
     const Quaternion grip = random.rotation();
@@ -142,7 +144,7 @@ TEST(PostProcessors, CircularMovesAreReadBack) {
   ProgramSettings settings = sample_settings();
   settings.shapes.emplace();
   const RobotProgram program = robot_program(path, settings);
-  EXPECT_LT(program.moves.size(), 60u);
+  EXPECT_LT(program.moves.size(), static_cast<std::size_t>(6 * strokes));
   for (std::size_t n = 0; n < 2 * std::size(k_dialects); ++n) {
     const Dialect& dialect = k_dialects[n / 2];
     const bool framed = n % 2 == 1;
@@ -162,7 +164,7 @@ TEST(PostProcessors, CircularMovesAreReadBack) {
       ++circular;
       EXPECT_LT((in_base(read, read.moves[i].via_m) - move.via->translation).norm(), 1e-6);
     }
-    EXPECT_GE(circular, 10);
+    EXPECT_GE(circular, strokes);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tests/unit/kernels/pose/scene.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -60,19 +61,21 @@ std::string kinds_of(const std::vector<StrokeSegment>& segments) {
 }
 
 TEST(StrokeSegments, ALineIsOneLineInNoiseOfItsCovariance) {
+  const int strokes = test::repetitions(200, 20);
   int one = 0;
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const NoisyShape shape(straight, 0.2, 0.0005, seed);
+  for (int seed = 1; seed <= strokes; ++seed) {
+    const NoisyShape shape(straight, 0.2, 0.0005, static_cast<std::uint64_t>(seed));
     one += kinds_of(stroke_segments(shape.points, {})) == "L" ? 1 : 0;
   }
-  EXPECT_GE(one, 196);  // 99.9 % of a single test; a stroke needs several
+  EXPECT_GE(one, 98 * strokes / 100);  // 99.9 % of a single test; a stroke needs several
 }
 
 TEST(StrokeSegments, ACornerIsFoundWhereItIs) {
+  const int strokes = test::repetitions(60, 12);
   int right = 0;
   double worst_m = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const NoisyShape shape(corner_shape, 0.2, 0.0003, 1000 + seed);
+  for (int seed = 1; seed <= strokes; ++seed) {
+    const NoisyShape shape(corner_shape, 0.2, 0.0003, 1000 + static_cast<std::uint64_t>(seed));
     if (kinds_of(stroke_segments(shape.points, {})) != "LL") continue;
     ++right;
     const auto moves = stroke_moves(shape.points, SegmentSettings{});
@@ -81,9 +84,9 @@ TEST(StrokeSegments, ACornerIsFoundWhereItIs) {
     const Vector3 corner = shape.frame * Vector3(0.1, 0, 0);
     worst_m = std::max(worst_m, (moves[1].pose.translation - corner).norm());
   }
-  EXPECT_GE(right, 57);
+  EXPECT_GE(right, 95 * strokes / 100);
   EXPECT_LT(worst_m, 0.0006);
-  std::printf("%d of 60 corners, at most %.2f mm off\n", right, 1e3 * worst_m);
+  std::printf("%d of %d corners, at most %.2f mm off\n", right, strokes, 1e3 * worst_m);
 }
 
 TEST(StrokeSegments, AnArcHasItsCentreAndRadius) {
@@ -110,16 +113,18 @@ TEST(StrokeSegments, AnArcHasItsCentreAndRadius) {
 }
 
 TEST(StrokeSegments, ATangentArcIsBetweenItsLines) {
+  const int strokes = test::repetitions(40, 8);
   int right = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const NoisyShape shape(rounded_corner, 0.16 + 0.02 * std::numbers::pi, 0.0002, 3000 + seed);
+  for (int seed = 1; seed <= strokes; ++seed) {
+    const NoisyShape shape(rounded_corner, 0.16 + 0.02 * std::numbers::pi, 0.0002,
+                           3000 + static_cast<std::uint64_t>(seed));
     const auto segments = stroke_segments(shape.points, {});
     if (kinds_of(segments) != "LAL") continue;
     ++right;
     EXPECT_NEAR(segments[1].radius_m, 0.04, 0.004);
   }
-  EXPECT_GE(right, 32);
-  std::printf("%d of 40 rounded corners\n", right);
+  EXPECT_GE(right, 80 * strokes / 100);
+  std::printf("%d of %d rounded corners\n", right, strokes);
 }
 
 // The same points: a line for a large covariance, none for a small one.
