@@ -7,6 +7,7 @@ namespace glint {
 
 void add_budget_measure(CLI::App& budget, int& exit_code);
 void add_budget_curve(CLI::App& budget, int& exit_code);
+void add_budget_prove(CLI::App& budget, int& exit_code);
 void add_budget_schedule(CLI::App& budget, int& exit_code);
 void add_budget_check(CLI::App& budget, int& exit_code);
 void add_budget_report(CLI::App& budget, int& exit_code);

@@ -10,6 +10,7 @@ void add_budget(CLI::App& app, int& exit_code) {
   budget->footer("Example: glint budget schedule --board x86-64-emulated --out plan.toml");
   add_budget_measure(*budget, exit_code);
   add_budget_curve(*budget, exit_code);
+  add_budget_prove(*budget, exit_code);
   add_budget_schedule(*budget, exit_code);
   add_budget_check(*budget, exit_code);
   add_budget_report(*budget, exit_code);
