@@ -171,6 +171,12 @@ TEST_F(ProveToy, RejectsALoopWhoseLineMoved) {
   }
 }
 
+// A kernel's edit that moves a loop is found here, before `glint budget prove` runs.
+TEST(LoopBounds, OfTheKernelsNameTheLinesOfTheirLoops) {
+  EXPECT_NO_THROW(
+      LoopBounds(source_folder() + "/platform/budget/prove/loops.toml", source_folder()));
+}
+
 TEST_F(ProveToy, AcceptsItsCertificateAndRejectsDamagedOnes) {
   const KernelProof proof = proof_of("Calls");
   ASSERT_TRUE(proof.proved()) << proof.reasons.front();
