@@ -1,7 +1,5 @@
 #include "platform/sources/dds_source.hpp"
 
-#include <dds/ddsi/ddsi_serdata.h>
-
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -22,30 +20,10 @@ namespace {
 constexpr int k_image_queue_size = 16;       // a third of a second of AHAT, 0.5 MB each
 constexpr int k_transform_queue_size = 100;  // as tf2_ros
 constexpr int k_take_rounds_max = 256;       // rounds over the topics per reading of the clock
+constexpr std::size_t k_camera_info_bytes = std::size_t{16} << 10;
+constexpr std::size_t k_transforms_bytes = std::size_t{1} << 20;
 constexpr Duration k_lens_wait = milliseconds(10'000);
 constexpr Duration k_lens_poll = milliseconds(10);
-
-// Serialised bytes of one message, contiguous.
-struct Packed {
-  ddsi_serdata* data = nullptr;
-  ddsrt_iovec_t bytes{};
-  Packed() = default;
-  ~Packed() {
-    if (bytes.iov_base != nullptr) ddsi_serdata_to_ser_unref(data, &bytes);
-    if (data != nullptr) ddsi_serdata_unref(data);
-  }
-  Packed(const Packed&) = delete;
-  Packed& operator=(const Packed&) = delete;
-  [[nodiscard]] std::span<const std::uint8_t> message() {
-    (void)ddsi_serdata_to_ser_ref(data, 0, ddsi_serdata_size(data), &bytes);
-    return {static_cast<const std::uint8_t*>(bytes.iov_base), bytes.iov_len};
-  }
-};
-
-// Takes the next message; returns false if there is none.
-bool take_serialised(dds_entity_t reader, Packed& packed, dds_sample_info_t& info) {
-  return dds_takecdr(reader, &packed.data, 1, &info, DDS_ANY_STATE) == 1;
-}
 
 std::string checked_topic(const SourceSettings& source, const char* key, const std::string& topic) {
   std::string name = dds_topic(topic);
@@ -55,18 +33,16 @@ std::string checked_topic(const SourceSettings& source, const char* key, const s
                    "; expected a topic's name, e.g. /tof/image");
 }
 
-SourceLens lens_from(Participant& participant, const std::string& topic, LiveSettings live) {
-  const dds_entity_t reader =
-      participant.reader(camera_info_type(), dds_topic(topic),
-                         {Reliability::best_effort, Durability::volatile_data, 1});
+SourceLens lens_from(DdsProcess& process, const std::string& topic, LiveSettings live) {
+  const int reader =
+      process.reader(camera_info_type(), dds_topic(topic),
+                     {Reliability::best_effort, Durability::volatile_data, 1}, k_camera_info_bytes);
   const Time end = monotonic_now() + k_lens_wait;
   while (monotonic_now() < end && (live.stop == nullptr || !*live.stop)) {
-    Packed packed;
-    dds_sample_info_t info;
-    if (take_serialised(reader, packed, info) && info.valid_data) {
-      SourceLens lens{topic, {}, lens_text_of_camera_info(packed.message(), topic)};
-      dds_delete(reader);
-      return lens;
+    ReceivedMessage message;
+    if (process.take(reader, message) && message.kind == RecordKind::message) {
+      process.remove(reader);
+      return {topic, {}, lens_text_of_camera_info(message.bytes, topic)};
     }
     (void)sleep_until(monotonic_now() + k_lens_poll);
   }
@@ -89,17 +65,17 @@ std::unique_ptr<DdsSource> DdsSource::open(Cell& cell, LiveSettings live) {
   DdsSettings settings;
   settings.domain = source.domain.value_or(cell.dds.domain);
   settings.interface = cell.dds.interface;
-  auto participant = std::make_shared<Participant>(settings);
+  auto process = DdsProcess::of(settings, DdsProcess::k_image_bytes);
   if (!names_lens(cell)) {
-    set_lens(cell, lens_from(*participant, source.camera_info_topic, live));
+    set_lens(cell, lens_from(*process, source.camera_info_topic, live));
   }
   require_lens(cell);
-  return std::unique_ptr<DdsSource>(new DdsSource(std::move(participant), cell, live));
+  return std::unique_ptr<DdsSource>(new DdsSource(std::move(process), cell, live));
 }
 
-DdsSource::DdsSource(std::shared_ptr<Participant> participant, const Cell& cell, LiveSettings live)
+DdsSource::DdsSource(std::shared_ptr<DdsProcess> process, const Cell& cell, LiveSettings live)
     : LiveSource(cell.camera, live),
-      participant_(std::move(participant)),
+      process_(std::move(process)),
       source_(cell.source),
       domain_(cell.source.domain.value_or(cell.dds.domain)),
       frames_(*this, cell.source) {
@@ -123,18 +99,13 @@ void DdsSource::add(Use use, const std::string& topic, bool reliable) {
   quality.reliability = reliable ? Reliability::reliable : Reliability::best_effort;
   quality.depth = is_image ? k_image_queue_size : k_transform_queue_size;
   if (use == Use::fixed_transforms) quality.durability = Durability::transient_local;
-  Input& input = inputs_.emplace_back(use, has_message_);
-  input.topic = topic;
-  input.reader = participant_->reader(type, dds_topic(topic), quality);
-  dds_listener_t* const listener = dds_create_listener(&input);
-  dds_lset_data_available(listener, on_message);
-  dds_set_listener(input.reader, listener);
-  dds_delete_listener(listener);
+  const std::size_t bytes_max = is_image ? k_message_bytes_max : k_transforms_bytes;
+  inputs_.push_back({use, topic, process_->reader(type, dds_topic(topic), quality, bytes_max)});
 }
 
 DdsSource::~DdsSource() {
   stop();
-  for (const Input& input : inputs_) dds_delete(input.reader);
+  for (const Input& input : inputs_) process_->remove(input.reader);
 }
 
 void DdsSource::stop() {
@@ -142,47 +113,25 @@ void DdsSource::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-// Called on Cyclone's thread after each message. A full reader overwrites its oldest message, and
-// Cyclone does not count it.
-void DdsSource::on_message(dds_entity_t /*reader*/, void* argument) noexcept {
-  Input& input = *static_cast<Input*>(argument);
-  const bool is_image = input.use == Use::reflectivity || input.use == Use::depth;
-  if (input.waiting >= (is_image ? k_image_queue_size : k_transform_queue_size)) {
-    ++input.overwritten;
-  } else {
-    ++input.waiting;
-  }
-  input.has_message.post();
-}
-
 void DdsSource::run() noexcept {
+  std::uint64_t arrivals = 0;
   while (!stop_) {
-    (void)has_message_.wait_until(std::min(monotonic_now() + k_live_poll, frames_.due()));
+    const Duration until_due = frames_.due() - monotonic_now();
+    arrivals = process_->wait(arrivals, std::clamp(until_due, Duration{}, k_live_poll));
     bool any = true;
     for (int round = 0; any && round < k_take_rounds_max; ++round) {
       any = false;
-      for (Input& input : inputs_) any = take(input) || any;  // transforms before their images
+      for (const Input& input : inputs_)
+        any = take(input) || any;  // transforms before their images
     }
     frames_.publish_ready(monotonic_now());
   }
 }
 
-bool DdsSource::take(Input& input) {
-  Packed packed;
-  dds_sample_info_t info;
-  if (!take_serialised(input.reader, packed, info)) {
-    input.waiting = 0;  // `waiting` also counted a publisher's end
-    return false;
-  }
-  if (!info.valid_data) return true;
-  if (input.waiting > 0) --input.waiting;
-  if (ddsi_serdata_size(packed.data) > k_message_bytes_max) {
-    frames_.refuse(input.topic + ": a message of " +
-                   std::to_string(ddsi_serdata_size(packed.data)) + " bytes; expected at most " +
-                   std::to_string(k_message_bytes_max));
-    return true;
-  }
-  use(input, packed.message(), info.publication_handle);
+bool DdsSource::take(const Input& input) {
+  ReceivedMessage message;
+  if (!process_->take(input.reader, message)) return false;
+  if (message.kind == RecordKind::message) use(input, message.bytes, message.sender);
   return true;
 }
 
@@ -208,27 +157,34 @@ SourceReport DdsSource::report() {
                 printable(source_.reflectivity_topic) + " and " + printable(source_.depth_topic) +
                 (frames_.publishers() == 0 ? ": no image received" : "");
   frames_.add_to(report);
-  std::uint64_t lost = 0, overwritten = 0, incompatible = 0;
+  std::uint64_t lost = 0, overwritten = 0, too_large = 0, incompatible = 0;
   for (const Input& input : inputs_) {
-    dds_sample_lost_status_t samples{};
-    dds_get_sample_lost_status(input.reader, &samples);
-    lost += samples.total_count;
-    overwritten += input.overwritten;
-    dds_requested_incompatible_qos_status_t refused{};
-    dds_get_requested_incompatible_qos_status(input.reader, &refused);
-    if (refused.total_count == 0) continue;
-    incompatible += refused.total_count;
+    const ReaderLosses losses = process_->losses(input.reader);
+    lost += losses.lost;
+    overwritten += losses.overwritten;
+    too_large += losses.refused;
+    if (losses.incompatible == 0) continue;
+    incompatible += losses.incompatible;
     report.failures.push_back(
         input.topic +
         ": a best-effort publisher; expected a reliable one, or source.reliable = false");
   }
   report.counts.insert(report.counts.end(), {{"messages_lost", lost},
                                              {"messages_overwritten", overwritten},
-                                             {"publishers_incompatible", incompatible}});
+                                             {"messages_too_large", too_large},
+                                             {"publishers_incompatible", incompatible},
+                                             {"dds_restarts", process_->restarts()}});
   add_to(report);
   if (lost > 0) report.failures.push_back(std::to_string(lost) + " messages lost in transport");
   if (overwritten > 0) {
     report.failures.push_back(std::to_string(overwritten) + " messages overwritten: read too late");
+  }
+  if (too_large > 0) {
+    report.failures.push_back(std::to_string(too_large) + " messages refused: too large");
+  }
+  if (process_->restarts() > 0) {
+    report.failures.push_back("the DDS process " + process_->last_end() + ": restarted " +
+                              std::to_string(process_->restarts()) + " times");
   }
   return report;
 }

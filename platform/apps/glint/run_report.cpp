@@ -201,6 +201,9 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
       {"dds_written", result.dds.written},
       {"ring_dropped", result.dds.ring_dropped},
       {"dds_others_lost", result.dds.poses_and_transforms_lost},
+      {"dds_process_lost", result.dds.process_lost},
+      {"dds_process_restarts", result.dds.process_restarts},
+      {"dds_process_end", result.dds_process_end},
       {"dds_received", result.dds_reader.received},
       {"dds_missed", result.dds_reader.missed},
       {"dds_poses_written", result.dds.poses_written},
@@ -211,7 +214,8 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
         {"initial_poses", result.dds_received.guesses},
         {"buttons", result.dds_received.buttons},
         {"tools", result.dds_received.tools},
-        {"refused", result.dds_received.refused}}},
+        {"refused", result.dds_received.refused},
+        {"lost", result.dds_received.lost}}},
       {"recording", result.recording_file},
       {"recording_complete", result.recording.complete()},
       {"recording_ended_early", result.recording.ended_early},
@@ -318,10 +322,13 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   const auto of_reader = [&](std::uint64_t count) {
     return result.dds_reader_error.empty() ? std::to_string(count) : "-";
   };
-  row("DDS", std::to_string(result.dds.written) + " written, " +
-                 of_reader(result.dds_reader.received) + " received, " +
-                 of_reader(result.dds_reader.missed) + " missed, " +
-                 std::to_string(result.dds.ring_dropped) + " dropped");
+  row("DDS",
+      std::to_string(result.dds.written) + " written, " + of_reader(result.dds_reader.received) +
+          " received, " + of_reader(result.dds_reader.missed) + " missed, " +
+          std::to_string(result.dds.ring_dropped) + " dropped" +
+          (result.dds.process_restarts == 0
+               ? ""
+               : "; process restarted " + std::to_string(result.dds.process_restarts) + " times"));
   if (const ReceivedCounts& received = result.dds_received; received.any()) {
     row("received over DDS", std::to_string(received.joints) + " joint states, " +
                                  std::to_string(received.descriptions) + " descriptions, " +

@@ -18,24 +18,30 @@ namespace glint {
 static_assert(sizeof(std::atomic<std::uint32_t>) == sizeof(std::uint32_t),
               "the kernel reads the counter's bits");
 
+// Who shares the counter: threads of one process, or processes that map the same memory.
+enum class FutexUse : int { threads = FUTEX_PRIVATE_FLAG, processes = 0 };
+
 // Sleeps while `counter` is `value`; may return early. Returns false if the deadline (monotonic;
 // null: none) has passed.
 [[nodiscard]] inline bool futex_sleep(std::atomic<std::uint32_t>& counter, std::uint32_t value,
-                                      const Time* deadline) noexcept {
+                                      const Time* deadline,
+                                      FutexUse use = FutexUse::threads) noexcept {
   constexpr std::int64_t k_nanoseconds = 1'000'000'000;
   timespec until{};
   if (deadline != nullptr) {
     until.tv_sec = static_cast<time_t>(deadline->nanoseconds / k_nanoseconds);
     until.tv_nsec = static_cast<long>(deadline->nanoseconds % k_nanoseconds);
   }
-  const long result = syscall(
-      SYS_futex, reinterpret_cast<std::uint32_t*>(&counter), FUTEX_WAIT_BITSET | FUTEX_PRIVATE_FLAG,
-      value, deadline != nullptr ? &until : nullptr, nullptr, FUTEX_BITSET_MATCH_ANY);
+  const long result =
+      syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&counter),
+              FUTEX_WAIT_BITSET | static_cast<int>(use), value,
+              deadline != nullptr ? &until : nullptr, nullptr, FUTEX_BITSET_MATCH_ANY);
   return !(result == -1 && errno == ETIMEDOUT);
 }
 
-inline void futex_wake(std::atomic<std::uint32_t>& counter, int threads_max) noexcept {
-  syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&counter), FUTEX_WAKE | FUTEX_PRIVATE_FLAG,
+inline void futex_wake(std::atomic<std::uint32_t>& counter, int threads_max,
+                       FutexUse use = FutexUse::threads) noexcept {
+  syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&counter), FUTEX_WAKE | static_cast<int>(use),
           threads_max, nullptr, nullptr, 0);
 }
 

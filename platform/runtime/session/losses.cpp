@@ -49,16 +49,28 @@ void add_can(const CanSinkCounts& can, Losses& losses) {
 void add_dds(const SinkOutcome& outcome, Losses& losses) {
   const DdsCounts& dds = outcome.dds;
   if (dds.ring_dropped > 0) {
-    losses.add(LossKind::dds, dds.ring_dropped,
-               counted(dds.ring_dropped, "samples not written: queue full, or refused by DDS"));
+    losses.add(
+        LossKind::dds, dds.ring_dropped,
+        counted(dds.ring_dropped,
+                "samples not published: queue full, or the DDS process refused or lost them"));
   }
   if (dds.poses_and_transforms_lost > 0) {
     losses.add(LossKind::dds, dds.poses_and_transforms_lost,
-               counted(dds.poses_and_transforms_lost, "poses and transforms not written"));
+               counted(dds.poses_and_transforms_lost, "other messages not published"));
   }
-  if (outcome.dds_was_read && outcome.dds_reader.missed > 0) {
-    losses.add(LossKind::dds, outcome.dds_reader.missed,
-               counted(outcome.dds_reader.missed, "samples written but not received"));
+  if (dds.process_restarts > 0) {
+    losses.add(LossKind::dds, 0,
+               "the DDS process " + outcome.dds_process_end + "; restarted " +
+                   std::to_string(dds.process_restarts) + " times");
+  }
+  // The reader also misses what the DDS process lost, which is counted above.
+  if (outcome.dds_was_read && outcome.dds_reader.missed > dds.process_lost) {
+    const std::uint64_t missed = outcome.dds_reader.missed - dds.process_lost;
+    losses.add(LossKind::dds, missed, counted(missed, "samples written but not received"));
+  }
+  if (outcome.dds_received.lost > 0) {
+    losses.add(LossKind::dds, outcome.dds_received.lost,
+               counted(outcome.dds_received.lost, "received messages overwritten: read too late"));
   }
   if (!outcome.dds_reader_error.empty()) {
     losses.add(LossKind::dds, 0, "received count unknown: " + outcome.dds_reader_error);

@@ -45,6 +45,7 @@ struct SinkOutcome {
   ButtonFrameCounts can_received;  // button frames received
   std::string can_receive_error;   // why no button frames can arrive, if the cell names one
   DdsCounts dds;
+  std::string dds_process_end;                       // why the DDS process ended; empty: it did not
   ReceivedCounts dds_received;                       // received over DDS
   std::vector<ToolChangeCounts> tool_change_counts;  // by tool; empty: no DDS
   ReaderResult dds_reader;

@@ -6,6 +6,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/runtime/session/recorded_cell.hpp"
+#include "platform/sinks/dds/dds_process.hpp"
 #include "schedules/bus_load.hpp"
 
 namespace glint {
@@ -133,8 +134,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
       ++(there ? orders.added : orders.removed);
       tool_requests_.ask(tool, there);
     };
-    inputs_ =
-        std::make_unique<DdsInputs>(dds_->participant(), settings, record_button, on_tool_change);
+    inputs_ = std::make_unique<DdsInputs>(dds_->process(), settings, record_button, on_tool_change);
     inputs_->start();
     dds_->start();
     if (reader_ != nullptr && !dds_->wait_for_readers(1, k_reader_limit)) {
@@ -188,8 +188,10 @@ void Sinks::close(SinkOutcome& result) {
   }
   // Last, so that the last diagnostics include every loss.
   if (dds_ != nullptr) {
+    const std::shared_ptr<DdsProcess> process = dds_->process();
     dds_->stop();
     result.dds = dds_->counts();
+    result.dds_process_end = process->last_end();
     if (reader_ != nullptr) {
       try {
         result.dds_reader = reader_->finish(k_reader_limit);

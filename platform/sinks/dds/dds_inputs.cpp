@@ -1,12 +1,11 @@
 #include "platform/sinks/dds/dds_inputs.hpp"
 
-#include <dds/ddsi/ddsi_serdata.h>
-
 #include <algorithm>
-#include <array>
 #include <chrono>
 
+#include "platform/sinks/dds/messages.hpp"
 #include "platform/sinks/dds/topic_names.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
 
 namespace glint {
 namespace {
@@ -28,36 +27,9 @@ constexpr std::size_t k_tool_bytes = 128;  // a name has 31 at most
 
 constexpr Duration k_poll_period = milliseconds(20);
 constexpr int k_messages_per_read_max = 256;  // per call and topic: no topic starves the others
-constexpr std::size_t k_senders_max = 64;     // publishers of one button searched for the sender
 
 constexpr const char* k_button_names[k_button_count] = {"button", "button_delete", "button_undo",
                                                         "button_finish"};
-
-// Takes all available messages of a reader. Deserialises a message only if it has at most
-// `bytes_max` bytes; `use(message, sender)` returns whether it is valid. Returns the number of
-// rejected messages.
-template <class Message, class Use>
-std::uint64_t take_bounded(dds_entity_t reader, const TopicType& type, std::size_t bytes_max,
-                           Use use) {
-  std::uint64_t refused = 0;
-  for (int i = 0; i < k_messages_per_read_max; ++i) {
-    std::array<ddsi_serdata*, 1> packed{};
-    dds_sample_info_t info;
-    if (dds_takecdr(reader, packed.data(), 1, &info, DDS_ANY_STATE) != 1) break;
-    if (info.valid_data) {
-      Message message{};
-      bool taken = false;
-      if (ddsi_serdata_size(packed[0]) <= bytes_max) {
-        taken = ddsi_serdata_to_sample(packed[0], &message, nullptr, nullptr) &&
-                use(message, info.publication_handle);
-        dds_sample_free(&message, type.descriptor, DDS_FREE_CONTENTS);
-      }
-      if (!taken) ++refused;
-    }
-    ddsi_serdata_unref(packed[0]);
-  }
-  return refused;
-}
 
 // Only the reading thread writes the counters.
 std::uint64_t count_up(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) {
@@ -73,47 +45,41 @@ Time steady_now() {
 
 }  // namespace
 
-DdsInputs::DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
+DdsInputs::DdsInputs(std::shared_ptr<DdsProcess> process, const DdsSettings& settings,
                      OnButton on_button, OnTool on_tool)
-    : participant_(std::move(participant)),
+    : process_(std::move(process)),
       unix_minus_session_(settings.unix_minus_session),
       session_minus_steady_(Time{dds_time()} - unix_minus_session_ - steady_now()),
       on_button_(std::move(on_button)),
       on_tool_(std::move(on_tool)),
       button_timeout_(settings.button_timeout),
       tool_names_(settings.tool_names),
-      waitset_(participant_->waitset()),
       joints_(std::make_unique<graph::TripleBuffer<ReceivedJoints>>()),
       initial_pose_(std::make_unique<graph::TripleBuffer<ReceivedInitialPose>>()),
       description_(std::make_unique<graph::TripleBuffer<ReceivedDescription>>()) {
-  joints_reader_ = add_reader(joint_state_type(), k_joint_states_topic, k_joints);
-  description_reader_ = add_reader(text_type(), k_robot_description_topic, k_description);
-  guess_reader_ = add_reader(pose_covariance_type(), k_initial_pose_topic, k_guess);
+  const auto add = [this](const TopicType& type, const std::string& topic, const Quality& quality,
+                          std::size_t bytes_max) {
+    return readers_.emplace_back(process_->reader(type, topic, quality, bytes_max));
+  };
+  joints_reader_ = add(joint_state_type(), k_joint_states_topic, k_joints, k_joints_bytes);
+  description_reader_ =
+      add(text_type(), k_robot_description_topic, k_description, k_description_bytes);
+  guess_reader_ = add(pose_covariance_type(), k_initial_pose_topic, k_guess, k_guess_bytes);
   const std::string& prefix = settings.topic_prefix;
   if (settings.accepts_tool_changes) {
-    add_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_add_name), k_tool);
-    remove_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_remove_name), k_tool);
+    add_reader_ = add(text_type(), topic_under(prefix, k_tool_add_name), k_tool, k_tool_bytes);
+    remove_reader_ =
+        add(text_type(), topic_under(prefix, k_tool_remove_name), k_tool, k_tool_bytes);
   }
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
-    buttons_[i].reader = add_reader(bool_type(), topic_under(prefix, k_button_names[i]), k_button);
+    buttons_[i].reader =
+        add(bool_type(), topic_under(prefix, k_button_names[i]), k_button, k_button_bytes);
   }
 }
 
 DdsInputs::~DdsInputs() {
   stop();
-  for (const ButtonReader& button : buttons_) dds_delete(button.reader);
-  for (const dds_entity_t entity : {remove_reader_, add_reader_, guess_reader_, description_reader_,
-                                    joints_reader_, waitset_}) {
-    if (entity != 0) dds_delete(entity);
-  }
-}
-
-dds_entity_t DdsInputs::add_reader(const TopicType& type, const std::string& topic,
-                                   const Quality& quality) {
-  const dds_entity_t reader = participant_->reader(type, topic, quality);
-  dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS);
-  dds_waitset_attach(waitset_, reader, 0);
-  return reader;
+  for (const int reader : readers_) process_->remove(reader);
 }
 
 void DdsInputs::start() {
@@ -129,94 +95,88 @@ void DdsInputs::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void DdsInputs::read(Duration limit) {
-  dds_waitset_wait(waitset_, nullptr, 0, limit.nanoseconds);
-  take_joints();
-  take_descriptions();
-  take_initial_poses();
-  for (int i = 0; i < k_button_count; ++i) {
-    take_button(static_cast<Button>(i));
-    release_if_gone(static_cast<Button>(i));
+// Takes the available messages of a reader; `use(message)` returns whether it is valid.
+template <class Use>
+void DdsInputs::take_all(int reader, Use use) {
+  ReceivedMessage message;
+  for (int i = 0; i < k_messages_per_read_max && process_->take(reader, message); ++i) {
+    if (!use(message)) count_up(invalid_);
   }
-  if (remove_reader_ == 0) return;
+}
+
+void DdsInputs::read(Duration limit) {
+  arrivals_ = process_->wait(arrivals_, limit);
+  const auto is_message = [](const ReceivedMessage& one) {
+    return one.kind == RecordKind::message;
+  };
+  take_all(joints_reader_, [&](const ReceivedMessage& one) {
+    if (!is_message(one)) return true;
+    if (!read_message(one.bytes, unix_minus_session_, now(), joints_->write_slot())) return false;
+    joints_->publish(count_up(joints_count_), now().nanoseconds);
+    return true;
+  });
+  take_all(description_reader_, [&](const ReceivedMessage& one) {
+    if (!is_message(one)) return true;
+    if (!read_message(one.bytes, description_->write_slot())) return false;
+    description_->publish(count_up(description_count_), now().nanoseconds);
+    return true;
+  });
+  take_all(guess_reader_, [&](const ReceivedMessage& one) {
+    if (!is_message(one)) return true;
+    if (!read_message(one.bytes, unix_minus_session_, now(), initial_pose_->write_slot())) {
+      return false;
+    }
+    initial_pose_->publish(count_up(guess_count_), now().nanoseconds);
+    return true;
+  });
+  for (int i = 0; i < k_button_count; ++i) take_button(static_cast<Button>(i));
+  if (remove_reader_ < 0) return;
   take_tools(remove_reader_, false);
   take_tools(add_reader_, true);
 }
 
-void DdsInputs::take_joints() {
-  const auto use = [this](const JointStateMessage& message, dds_instance_handle_t) {
-    if (!read_message(message, unix_minus_session_, now(), joints_->write_slot())) return false;
-    joints_->publish(count_up(joints_count_), now().nanoseconds);
-    return true;
-  };
-  count_up(refused_, take_bounded<JointStateMessage>(joints_reader_, joint_state_type(),
-                                                     k_joints_bytes, use));
-}
-
-void DdsInputs::take_descriptions() {
-  const auto use = [this](const TextMessage& message, dds_instance_handle_t) {
-    if (!read_message(message, description_->write_slot())) return false;
-    description_->publish(count_up(description_count_), now().nanoseconds);
-    return true;
-  };
-  count_up(refused_,
-           take_bounded<TextMessage>(description_reader_, text_type(), k_description_bytes, use));
-}
-
-void DdsInputs::take_initial_poses() {
-  const auto use = [this](const PoseCovarianceMessage& message, dds_instance_handle_t) {
-    if (!read_message(message, unix_minus_session_, now(), initial_pose_->write_slot()))
-      return false;
-    initial_pose_->publish(count_up(guess_count_), now().nanoseconds);
-    return true;
-  };
-  count_up(refused_, take_bounded<PoseCovarianceMessage>(guess_reader_, pose_covariance_type(),
-                                                         k_guess_bytes, use));
-}
-
-// A driver may repeat the button's state at a fixed rate: only changes are events.
+// A driver may repeat the button's state at a fixed rate: only changes are events. A sender that
+// hangs or is disconnected repeats nothing.
 void DdsInputs::take_button(Button button) {
   ButtonReader& button_reader = buttons_[static_cast<std::size_t>(button)];
-  const auto use = [&](const BoolMessage& message, dds_instance_handle_t sender) {
+  take_all(button_reader.reader, [&](const ReceivedMessage& one) {
+    const Time time = now();
+    if (one.kind == RecordKind::sender_left) {
+      if (one.sender == 0 || one.sender == button_reader.sender) release(button, time);
+      return true;
+    }
+    bool pressed = false;
+    if (!read_message(one.bytes, pressed)) return false;
     count_up(button_count_);
-    button_reader.sender = sender;
-    button_reader.last = now();
-    if (message.data == button_reader.pressed) return true;
-    button_reader.pressed = message.data;
-    if (on_button_) on_button_({button_reader.last, button, button_reader.pressed});
+    button_reader.sender = one.sender;
+    button_reader.last = time;
+    if (pressed == button_reader.pressed) return true;
+    button_reader.pressed = pressed;
+    if (on_button_) on_button_({time, button, pressed});
     return true;
-  };
-  count_up(refused_,
-           take_bounded<BoolMessage>(button_reader.reader, bool_type(), k_button_bytes, use));
+  });
+  const Time time = now();
+  if (time - button_reader.last > button_timeout_) release(button, time);
 }
 
-// The sender left the domain (if killed: at the end of its lease), hangs, or is disconnected.
-void DdsInputs::release_if_gone(Button button) {
+void DdsInputs::release(Button button, Time time) {
   ButtonReader& button_reader = buttons_[static_cast<std::size_t>(button)];
   if (!button_reader.pressed) return;
-  std::array<dds_instance_handle_t, k_senders_max> senders{};
-  const int count =
-      dds_get_matched_publications(button_reader.reader, senders.data(), senders.size());
-  const auto end = senders.begin() + std::clamp(count, 0, static_cast<int>(senders.size()));
-  const bool left = count <= static_cast<int>(senders.size()) &&
-                    std::find(senders.begin(), end, button_reader.sender) == end;
-  const Time time = now();
-  if (!left && time - button_reader.last <= button_timeout_) return;
   button_reader.pressed = false;
   count_up(released_);
   if (on_button_) on_button_({time, button, false});
 }
 
 // Rejects names that are not among the run's tools.
-void DdsInputs::take_tools(dds_entity_t reader, bool there) {
-  const auto use = [&](const TextMessage& message, dds_instance_handle_t) {
-    const auto found = std::find(tool_names_.begin(), tool_names_.end(), message.data);
+void DdsInputs::take_tools(int reader, bool there) {
+  take_all(reader, [&](const ReceivedMessage& one) {
+    if (one.kind == RecordKind::sender_left) return true;
+    const auto found = std::find(tool_names_.begin(), tool_names_.end(), text_of(one.bytes));
     if (found == tool_names_.end()) return false;
     count_up(tool_count_);
     if (on_tool_) on_tool_(static_cast<int>(found - tool_names_.begin()), there);
     return true;
-  };
-  count_up(refused_, take_bounded<TextMessage>(reader, text_type(), k_tool_bytes, use));
+  });
 }
 
 Time DdsInputs::now() const { return steady_now() + session_minus_steady_; }
@@ -228,7 +188,12 @@ ReceivedCounts DdsInputs::counts() const noexcept {
   counts.guesses = guess_count_.load(std::memory_order_relaxed);
   counts.buttons = button_count_.load(std::memory_order_relaxed);
   counts.tools = tool_count_.load(std::memory_order_relaxed);
-  counts.refused = refused_.load(std::memory_order_relaxed);
+  counts.refused = invalid_.load(std::memory_order_relaxed);
+  for (const int reader : readers_) {
+    const ReaderLosses losses = process_->losses(reader);
+    counts.refused += losses.refused;
+    counts.lost += losses.overwritten;
+  }
   counts.released = released_.load(std::memory_order_relaxed);
   return counts;
 }

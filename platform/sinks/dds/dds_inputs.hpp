@@ -4,8 +4,8 @@
 // States go to triple buffers, read as Latest<>: only the newest counts. Each change of a button
 // goes to a callback, and so does each tool change, if the settings allow them. A held button is
 // released when its sender leaves the domain, cleanly or by its lease, or is silent for the
-// settings' timeout. Each message's size is checked before it is deserialised; an oversized or
-// invalid message is rejected and counted.
+// settings' timeout. They come from the DDS process in serialised form. An oversized or invalid
+// message is rejected and counted.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "graph/latest.hpp"
-#include "platform/sinks/dds/participant.hpp"
+#include "platform/sinks/dds/dds_process.hpp"
 #include "platform/sinks/dds/received_messages.hpp"
 #include "platform/sinks/record/button_event.hpp"
 
@@ -28,6 +28,7 @@ struct ReceivedCounts {
   // Received messages.
   std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0, tools = 0;
   std::uint64_t refused = 0;
+  std::uint64_t lost = 0;      // read too late
   std::uint64_t released = 0;  // buttons whose sender left or timed out
   [[nodiscard]] bool any() const {
     return joints + descriptions + guesses + buttons + tools + refused > 0;
@@ -40,9 +41,9 @@ class DdsInputs {
   // The tool with this index in the settings is present from now on, or removed.
   using OnTool = std::function<void(int tool, bool there)>;
 
-  // Both may be empty; the reading thread calls them at each change. Throws as Participant.
-  DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
-            OnButton on_button, OnTool on_tool = {});
+  // Both may be empty; the reading thread calls them at each change.
+  DdsInputs(std::shared_ptr<DdsProcess> process, const DdsSettings& settings, OnButton on_button,
+            OnTool on_tool = {});
   ~DdsInputs();  // stop()
   DdsInputs(const DdsInputs&) = delete;
   DdsInputs& operator=(const DdsInputs&) = delete;
@@ -66,37 +67,37 @@ class DdsInputs {
 
  private:
   struct ButtonReader {
-    dds_entity_t reader = 0;
+    int reader = 0;
     bool pressed = false;
-    dds_instance_handle_t sender = 0;  // of the last message
-    Time last;                         // its arrival time
+    std::uint64_t sender = 0;  // of the last message
+    Time last;                 // its arrival time
   };
 
-  dds_entity_t add_reader(const TopicType& type, const std::string& topic, const Quality& quality);
-  void take_joints();
-  void take_descriptions();
-  void take_initial_poses();
+  template <class Use>
+  void take_all(int reader, Use use);
   void take_button(Button button);
-  void release_if_gone(Button button);
-  void take_tools(dds_entity_t reader, bool there);
+  void release(Button button, Time time);
+  void take_tools(int reader, bool there);
   [[nodiscard]] Time now() const;
 
-  std::shared_ptr<Participant> participant_;
+  std::shared_ptr<DdsProcess> process_;
   Duration unix_minus_session_;
   Duration session_minus_steady_;  // constant: steps of the Unix clock do not change arrival times
   OnButton on_button_;
   OnTool on_tool_;
   Duration button_timeout_;
   std::vector<std::string> tool_names_;
-  dds_entity_t waitset_ = 0, joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
-  dds_entity_t add_reader_ = 0, remove_reader_ = 0;
+  int joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
+  int add_reader_ = -1, remove_reader_ = -1;  // negative: not read
+  std::vector<int> readers_;                  // all of them
+  std::uint64_t arrivals_ = 0;                // handled
   std::array<ButtonReader, k_button_count> buttons_;
   std::unique_ptr<graph::TripleBuffer<ReceivedJoints>> joints_;
   std::unique_ptr<graph::TripleBuffer<ReceivedInitialPose>> initial_pose_;
   std::unique_ptr<graph::TripleBuffer<ReceivedDescription>> description_;
   using Counter = std::atomic<std::uint64_t>;
   Counter joints_count_{0}, description_count_{0}, guess_count_{0}, button_count_{0},
-      tool_count_{0}, refused_{0}, released_{0};
+      tool_count_{0}, invalid_{0}, released_{0};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -63,6 +63,8 @@ void DdsSink::stop() {
   if (thread_.joinable()) thread_.join();
   write_queued();
   write_diagnostics();  // including the losses of the last second
+  publisher_->flush(k_receipts_limit);
+  note_process_counts();  // without the marks that follow
   publisher_->end_streams(k_receipts_limit);
   publisher_.reset();
 }
@@ -70,10 +72,12 @@ void DdsSink::stop() {
 DdsCounts DdsSink::counts() const noexcept {
   DdsCounts counts;
   counts.offered = offered_.load(std::memory_order_relaxed);
+  counts.process_lost = process_lost_.load(std::memory_order_relaxed);
   counts.written = written_.load(std::memory_order_relaxed);
   counts.write_failed = write_failed_.load(std::memory_order_relaxed);
-  counts.ring_dropped =
-      ring_.dropped() + refused_.load(std::memory_order_relaxed) + counts.write_failed;
+  counts.ring_dropped = ring_.dropped() + refused_.load(std::memory_order_relaxed) +
+                        counts.write_failed + counts.process_lost;
+  counts.process_restarts = restarts_.load(std::memory_order_relaxed);
   counts.poses_written = poses_written_.load(std::memory_order_relaxed);
   counts.poses_and_transforms_lost =
       frames_.dropped() + others_failed_.load(std::memory_order_relaxed);
@@ -102,8 +106,8 @@ void DdsSink::write_diagnostics() {
   publisher_->write_diagnostics({now.offered, now.written, now.ring_dropped});
 }
 
-std::shared_ptr<Participant> DdsSink::participant() const {
-  return publisher_ != nullptr ? publisher_->participant() : nullptr;
+std::shared_ptr<DdsProcess> DdsSink::process() const {
+  return publisher_ != nullptr ? publisher_->process() : nullptr;
 }
 
 void DdsSink::write_queued() {
@@ -112,14 +116,18 @@ void DdsSink::write_queued() {
   if (robot_.sample()) publisher_->write_robot(robot_.value());
   PoseSample sample;
   while (ring_.pop(sample)) {
-    if (!publisher_->write(sample)) {
-      add_one(write_failed_);
-      continue;
-    }
-    add_one(written_);
-    if (sample.has_pose()) add_one(poses_written_);
+    if (!publisher_->write(sample)) add_one(write_failed_);
   }
-  others_failed_.store(publisher_->others_failed(), std::memory_order_relaxed);
+  note_process_counts();
+}
+
+void DdsSink::note_process_counts() {
+  const ProcessCounts counts = publisher_->process_counts();
+  written_.store(counts.statuses, std::memory_order_relaxed);
+  poses_written_.store(counts.poses, std::memory_order_relaxed);
+  process_lost_.store(counts.statuses_lost, std::memory_order_relaxed);
+  others_failed_.store(publisher_->others_failed() + counts.others_lost, std::memory_order_relaxed);
+  restarts_.store(publisher_->process()->restarts(), std::memory_order_relaxed);
 }
 
 }  // namespace glint

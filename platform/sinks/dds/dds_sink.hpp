@@ -1,10 +1,11 @@
 // DDS publisher of pose samples, for ROS 2 and other readers, on a thread of its own behind a
-// bounded ring.
+// bounded ring. The participant lives in the DDS process (dds_process.hpp).
 //
 // The tick thread only copies a sample into the ring: no heap, no lock, no system call. The sink's
 // thread polls the ring every poll_period; a wake-up would cost the tick thread a system call.
-// Samples that the full ring rejects are counted. After stop(), offered = written + ring_dropped
-// holds exactly. Topics, types and the reader's counting: README.md.
+// Samples that the full ring rejects are counted. A sample is written when the DDS process has
+// published its status. After stop(), offered = written + ring_dropped holds exactly. Topics, types
+// and the reader's counting: README.md.
 #pragma once
 
 #include <atomic>
@@ -22,17 +23,19 @@
 
 namespace glint {
 
-class Participant;
+class DdsProcess;
 class PosePublisher;
 
 struct DdsCounts {
   std::uint64_t offered = 0;        // calls of offer()
   std::uint64_t written = 0;        // of these, written to the tool's status topic
-  std::uint64_t ring_dropped = 0;   // not written: ring full, unknown tool, stopped, write failed
-  std::uint64_t write_failed = 0;   // part of ring_dropped: rejected by DDS or out of tick order
-  std::uint64_t poses_written = 0;  // written samples with a pose
+  std::uint64_t ring_dropped = 0;   // not written: ring full, unknown tool, stopped, and the next 2
+  std::uint64_t write_failed = 0;   // not taken by the DDS process, or out of tick order
+  std::uint64_t process_lost = 0;   // taken by the DDS process, not published
+  std::uint64_t poses_written = 0;  // poses of written samples
   std::uint64_t poses_and_transforms_lost =
-      0;  // poses and transforms: ring full, or rejected by DDS
+      0;  // all other messages: ring full, not taken or not published by the DDS process
+  std::uint64_t process_restarts = 0;
   [[nodiscard]] std::uint64_t lost() const { return ring_dropped + poses_and_transforms_lost; }
 };
 
@@ -65,9 +68,8 @@ class DdsSink final : public PoseOutput {
     robot_.publish(++robot_version_, 0);
   }
 
-  // Participant of the domain, for readers in this process; empty after stop(). A reader that holds
-  // it keeps the domain open.
-  [[nodiscard]] std::shared_ptr<Participant> participant() const;
+  // The DDS process, for readers of this program; empty after stop().
+  [[nodiscard]] std::shared_ptr<DdsProcess> process() const;
 
   // Writes the contents of the ring, sends the end of the streams, waits for acknowledgements (at
   // most 2 s) and leaves the domain. Call after the offering thread has ended.
@@ -81,6 +83,7 @@ class DdsSink final : public PoseOutput {
   void run();
   void write_queued();
   void write_diagnostics();
+  void note_process_counts();
 
   using Counter = std::atomic<std::uint64_t>;
   graph::Ring<PoseSample, k_ring_capacity> ring_;
@@ -88,7 +91,7 @@ class DdsSink final : public PoseOutput {
   graph::TripleBuffer<Pose> robot_;
   std::uint64_t robot_version_ = 0;
   Counter offered_{0}, refused_{0}, written_{0}, write_failed_{0}, poses_written_{0};
-  Counter others_failed_{0};
+  Counter others_failed_{0}, process_lost_{0}, restarts_{0};
   std::atomic<bool> accepting_{true};
   std::atomic<bool> stopping_{false};
   int tool_count_;

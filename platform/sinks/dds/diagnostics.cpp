@@ -89,6 +89,12 @@ void Diagnostics::add_losses(const LossCounters& losses) {
   add_entry(lost ? k_error : k_ok, keep("glint: losses"), keep(lost ? text : "none"), values);
 }
 
+void Diagnostics::add_process(std::uint64_t restarts, std::string_view how) {
+  std::vector<Value>& values = values_.emplace_back();
+  values.push_back({keep("restarts"), keep(std::to_string(restarts))});
+  add_entry(k_error, keep("glint: DDS process"), keep("it " + std::string(how)), values);
+}
+
 void Diagnostics::add_source(const SourceFaults& faults, std::uint64_t published) {
   std::vector<Value>& values = values_.emplace_back();
   for (std::size_t k = 0; k < k_source_faults; ++k) {

@@ -1,5 +1,5 @@
-// Message for /diagnostics: one entry per tool and one each for timing, losses, source, robot and
-// calibration.
+// Message for /diagnostics: one entry per tool and one each for timing, losses, the DDS process,
+// source, robot and calibration.
 #pragma once
 
 #include <deque>
@@ -26,6 +26,8 @@ class Diagnostics {
   void add_timing(const OverrunCounters& overruns, std::string_view timing_faults);
   // Output losses so far; an error from the first loss on.
   void add_losses(const LossCounters& losses);
+  // The DDS process ended `restarts` times; `how`: the last time.
+  void add_process(std::uint64_t restarts, std::string_view how);
   // Faults of a live source: an error while no frame arrives, a warning if the number of faults
   // exceeds `published`, that of the previous message.
   void add_source(const SourceFaults& faults, std::uint64_t published);

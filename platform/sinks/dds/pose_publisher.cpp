@@ -1,6 +1,7 @@
 #include "platform/sinks/dds/pose_publisher.hpp"
 
 #include <algorithm>
+#include <climits>
 #include <set>
 
 #include "kernels/limits.hpp"
@@ -19,6 +20,9 @@ constexpr Quality k_pose_quality{Reliability::reliable, Durability::volatile_dat
 constexpr Quality k_tf_quality{Reliability::reliable, Durability::volatile_data, 100};
 constexpr Quality k_tf_static_quality{Reliability::reliable, Durability::transient_local, 1};
 constexpr Quality k_diagnostics_quality{Reliability::reliable, Durability::volatile_data, 1};
+
+// A restart and the search for the readers, at the end of a run.
+constexpr Duration k_ready_limit = milliseconds(10'000);
 
 void check(const DdsSettings& settings) {
   const std::size_t count = settings.tool_names.size();
@@ -43,35 +47,56 @@ void check(const DdsSettings& settings) {
 }  // namespace
 
 PosePublisher::PosePublisher(const DdsSettings& settings)
-    : settings_((check(settings), settings)),
-      participant_(std::make_shared<Participant>(settings)) {
+    : settings_((check(settings), settings)), process_(DdsProcess::of(settings)) {
   for (const std::string& name : settings_.tool_names) {
     ToolStream stream;
     stream.name = name;
     stream.topics = topics_of(settings_.topic_prefix, name);
-    stream.status = participant_->writer(status_type(), stream.topics.status, k_status_quality);
-    stream.pose = participant_->writer(pose_stamped_type(), stream.topics.pose, k_pose_quality);
+    stream.status = process_->writer(status_type(), stream.topics.status, k_status_quality);
+    stream.pose = process_->writer(pose_stamped_type(), stream.topics.pose, k_pose_quality);
     stream.pose_covariance =
-        participant_->writer(pose_covariance_type(), stream.topics.pose_covariance, k_pose_quality);
+        process_->writer(pose_covariance_type(), stream.topics.pose_covariance, k_pose_quality);
     stream.pose_systematic =
-        participant_->writer(pose_covariance_type(), stream.topics.pose_systematic, k_pose_quality);
+        process_->writer(pose_covariance_type(), stream.topics.pose_systematic, k_pose_quality);
     streams_.push_back(std::move(stream));
   }
-  tf_ = participant_->writer(tf_type(), k_tf_topic, k_tf_quality);
-  tf_static_ = participant_->writer(tf_type(), k_tf_static_topic, k_tf_static_quality);
-  diagnostics_ =
-      participant_->writer(diagnostics_type(), k_diagnostics_topic, k_diagnostics_quality);
+  tf_ = process_->writer(tf_type(), k_tf_topic, k_tf_quality);
+  tf_static_ = process_->writer(tf_type(), k_tf_static_topic, k_tf_static_quality);
+  diagnostics_ = process_->writer(diagnostics_type(), k_diagnostics_topic, k_diagnostics_quality);
   write_static_transforms();
 }
 
+PosePublisher::~PosePublisher() {
+  for (const int writer : writers()) process_->remove(writer);
+}
+
 int PosePublisher::readers() const {
-  std::uint32_t readers_min = UINT32_MAX;
+  int readers_min = INT_MAX;
   for (const ToolStream& stream : streams_) {
-    dds_publication_matched_status_t status{};
-    if (dds_get_publication_matched_status(stream.status, &status) != DDS_RETCODE_OK) return 0;
-    readers_min = std::min(readers_min, status.current_count);
+    readers_min = std::min(readers_min, process_->matched(stream.status));
   }
-  return static_cast<int>(readers_min);
+  return readers_min;
+}
+
+ProcessCounts PosePublisher::process_counts() const {
+  ProcessCounts counts;
+  for (const ToolStream& stream : streams_) {
+    counts.statuses += process_->published(stream.status);
+    counts.poses += process_->published(stream.pose);
+    counts.statuses_lost += process_->lost(stream.status);
+  }
+  for (const int writer : writers()) counts.others_lost += process_->lost(writer);
+  counts.others_lost -= counts.statuses_lost;
+  return counts;
+}
+
+std::vector<int> PosePublisher::writers() const {
+  std::vector<int> all{tf_, tf_static_, diagnostics_};
+  for (const ToolStream& stream : streams_) {
+    all.insert(all.end(),
+               {stream.status, stream.pose, stream.pose_covariance, stream.pose_systematic});
+  }
+  return all;
 }
 
 bool PosePublisher::write(const PoseSample& sample) {
@@ -109,7 +134,7 @@ bool PosePublisher::write_status(ToolStream& stream, Time tick, StatusMessage me
   message.stream_start = time_message(unix_time(stream.start));
   message.ticks_not_sent = not_sent;
   message.tick_period_ns = static_cast<std::uint32_t>(settings_.tick_period.nanoseconds);
-  if (dds_write(stream.status, &message) != DDS_RETCODE_OK) return false;
+  if (!process_->write(stream.status, &message)) return false;
   stream.ticks_not_sent = not_sent;
   stream.last_written = tick;
   return true;
@@ -134,8 +159,8 @@ void PosePublisher::write_pose(const ToolStream& stream, const PoseSample& sampl
   write_unreliable(tf_, &tf);
 }
 
-void PosePublisher::write_unreliable(dds_entity_t writer, const void* message) {
-  if (dds_write(writer, message) != DDS_RETCODE_OK) ++others_failed_;
+void PosePublisher::write_unreliable(int writer, const void* message) {
+  if (!process_->write(writer, message)) ++others_failed_;
 }
 
 void PosePublisher::write_frame(const FrameTransforms& frame) {
@@ -179,6 +204,9 @@ void PosePublisher::write_diagnostics(const SinkCounts& counts) {
   }
   if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.timing_faults);
   if (settings_.losses != nullptr) text.add_losses(*settings_.losses);
+  if (const std::uint64_t restarts = process_->restarts(); restarts > 0) {
+    text.add_process(restarts, process_->last_end());
+  }
   if (settings_.source != nullptr) {
     text.add_source(*settings_.source, faults_published_);
     faults_published_ = settings_.source->total();
@@ -186,10 +214,12 @@ void PosePublisher::write_diagnostics(const SinkCounts& counts) {
   if (settings_.robot != nullptr) text.add_robot(*settings_.robot);
   if (settings_.calibration != nullptr) text.add_calibration(settings_.calibration->all());
   const DiagnosticsMessage message = text.message(Time{dds_time()});
-  dds_write(diagnostics_, &message);
+  write_unreliable(diagnostics_, &message);
 }
 
 void PosePublisher::end_streams(Duration limit) {
+  // A restarted process publishes the marks when it has found the readers again.
+  (void)process_->wait_until_ready(writers(), k_ready_limit);
   for (ToolStream& stream : streams_) {
     if (!stream.started) continue;
     StatusMessage message{};
@@ -198,11 +228,7 @@ void PosePublisher::end_streams(Duration limit) {
     message.tick_number = static_cast<std::uint32_t>(stream.sample.tick_number + 1);
     write_status(stream, stream.newest + settings_.tick_period, message);
   }
-  const dds_time_t deadline = dds_time() + limit.nanoseconds;
-  for (const ToolStream& stream : streams_) {
-    dds_wait_for_acks(stream.status, std::max<dds_duration_t>(0, deadline - dds_time()));
-    dds_wait_for_acks(stream.pose, std::max<dds_duration_t>(0, deadline - dds_time()));
-  }
+  flush(limit);
 }
 
 const char* PosePublisher::frame_name(ReferenceFrame frame) const {

@@ -1,10 +1,10 @@
 // DDS reader as a separate process, like any other program on the network.
 #pragma once
 
-#include <sys/types.h>
-
+#include <optional>
 #include <string>
 
+#include "platform/sinks/dds/child_process.hpp"
 #include "platform/sinks/dds/dds_settings.hpp"
 #include "platform/sinks/dds/reader_result.hpp"
 
@@ -24,15 +24,11 @@ class ReaderProcess {
   // MissingDevice on failure. Call once, after the sink's stop().
   [[nodiscard]] ReaderResult finish(Duration limit);
 
-  [[nodiscard]] pid_t id() const { return id_; }
+  [[nodiscard]] pid_t id() const { return process_->id(); }
 
  private:
-  // Returns whether the process ended within the limit.
-  bool wait(Duration limit);
-
   std::string result_file_;
-  pid_t id_ = -1;
-  int status_ = 0;
+  std::optional<ChildProcess> process_;  // from the constructor on
 };
 
 }  // namespace glint

@@ -8,11 +8,10 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "kernels/geometry.hpp"
 #include "kernels/units.hpp"
-#include "platform/sinks/dds/messages.hpp"
-#include "platform/sinks/dds/topic_types.hpp"
 
 namespace glint {
 
@@ -41,13 +40,18 @@ struct ReceivedDescription {
   std::string urdf;
 };
 
-// `arrival`: arrival in session time. Returns false for a rejected message; `to` is then
-// unspecified.
-[[nodiscard]] bool read_message(const JointStateMessage& message, Duration unix_minus_session,
-                                Time arrival, ReceivedJoints& to);
-[[nodiscard]] bool read_message(const PoseCovarianceMessage& message, Duration unix_minus_session,
-                                Time arrival, ReceivedInitialPose& to);
-[[nodiscard]] bool read_message(const TextMessage& message, ReceivedDescription& to);
+// Serialised messages: sensor_msgs/JointState, geometry_msgs/PoseWithCovarianceStamped,
+// std_msgs/String and std_msgs/Bool. `arrival`: arrival in session time. Returns false for a
+// rejected message; `to` is then unspecified.
+using MessageBytes = std::span<const std::uint8_t>;
+[[nodiscard]] bool read_message(MessageBytes message, Duration unix_minus_session, Time arrival,
+                                ReceivedJoints& to);
+[[nodiscard]] bool read_message(MessageBytes message, Duration unix_minus_session, Time arrival,
+                                ReceivedInitialPose& to);
+[[nodiscard]] bool read_message(MessageBytes message, ReceivedDescription& to);
+[[nodiscard]] bool read_message(MessageBytes message, bool& to);
+// The text of a std_msgs/String; empty if it is none.
+[[nodiscard]] std::string_view text_of(MessageBytes message);
 
 // Finds the positions of the named joints; ignores all others. Returns names.size(), or the index
 // of the first name that does not occur exactly once.

@@ -1,5 +1,7 @@
 #include "platform/sinks/dds/topic_types.hpp"
 
+#include "platform/sinks/dds/messages.hpp"
+
 namespace glint {
 
 // Hashes as published with ROS 2; a test recomputes them from the definitions.
@@ -34,6 +36,15 @@ TopicType text_type() {
 TopicType bool_type() {
   return {&std_msgs_msg_dds__Bool__desc,
           "feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9"};
+}
+
+std::optional<TopicType> type_named(std::string_view name) {
+  for (const TopicType& type :
+       {pose_stamped_type(), pose_covariance_type(), tf_type(), diagnostics_type(), status_type(),
+        image_type(), camera_info_type(), joint_state_type(), text_type(), bool_type()}) {
+    if (name == type.descriptor->m_typename) return type;
+  }
+  return {};
 }
 
 }  // namespace glint

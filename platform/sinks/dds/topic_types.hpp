@@ -1,6 +1,9 @@
 // ROS 2 message types for maps, paths, images and the robot's inputs.
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 #include "nav_msgs.h"
 #include "octomap_msgs.h"
 #include "platform/sinks/dds/participant.hpp"
@@ -24,5 +27,8 @@ using BoolMessage = std_msgs_msg_dds__Bool_;
 [[nodiscard]] TopicType joint_state_type();
 [[nodiscard]] TopicType text_type();
 [[nodiscard]] TopicType bool_type();
+
+// Any type of a topic that a DdsProcess serves, by its DDS name; empty: none.
+[[nodiscard]] std::optional<TopicType> type_named(std::string_view name);
 
 }  // namespace glint

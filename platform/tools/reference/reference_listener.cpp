@@ -34,7 +34,7 @@ ReferenceListener::ReferenceListener(const DdsSettings& settings, const Referenc
       limit_(limit),
       on_wait_(std::move(on_wait)),
       start_(std::chrono::steady_clock::now()),
-      inputs_(std::make_shared<Participant>(settings), settings, {}) {}
+      inputs_(DdsProcess::of(settings), settings, {}) {}
 
 std::string ReferenceListener::description() {
   wait_until([&] {

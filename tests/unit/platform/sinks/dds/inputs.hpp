@@ -4,9 +4,29 @@
 #include <string>
 #include <vector>
 
+#include "platform/sinks/dds/messages.hpp"
 #include "platform/sinks/dds/received_messages.hpp"
+#include "platform/sinks/dds/serialiser.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
 
 namespace glint {
+
+// Serialised as by a sender.
+inline std::vector<std::uint8_t> bytes_of(const JointStateMessage& message) {
+  Serialiser serialiser;
+  const auto bytes = serialiser.bytes_of(joint_state_type(), &message);
+  return {bytes.begin(), bytes.end()};
+}
+inline std::vector<std::uint8_t> bytes_of(const PoseCovarianceMessage& message) {
+  Serialiser serialiser;
+  const auto bytes = serialiser.bytes_of(pose_covariance_type(), &message);
+  return {bytes.begin(), bytes.end()};
+}
+inline std::vector<std::uint8_t> bytes_of(const TextMessage& message) {
+  Serialiser serialiser;
+  const auto bytes = serialiser.bytes_of(text_type(), &message);
+  return {bytes.begin(), bytes.end()};
+}
 
 // Owns the strings and arrays that a message points to.
 class JointText {

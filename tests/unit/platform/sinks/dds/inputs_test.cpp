@@ -35,7 +35,7 @@ struct Ends {
   Peer peer;
 
   Ends()
-      : inputs(std::make_shared<Participant>(test_settings()), test_settings(),
+      : inputs(DdsProcess::of(test_settings()), test_settings(),
                [this](const ButtonEvent& event) { events.push_back(event); }),
         peer(test_settings()) {}
 
@@ -79,7 +79,7 @@ TEST_F(Inputs, HearADescriptionThatWasPublishedBefore) {
   urdf.back() = '>';
   const TextMessage message{urdf.data()};
   ASSERT_EQ(dds_write(writer, &message), DDS_RETCODE_OK);
-  DdsInputs inputs(std::make_shared<Participant>(test_settings()), test_settings(), {});
+  DdsInputs inputs(DdsProcess::of(test_settings()), test_settings(), {});
   EXPECT_TRUE(wait_until([&] {
     inputs.read(milliseconds(2));
     return inputs.description().sample();
@@ -173,7 +173,7 @@ TEST_F(Inputs, ReleaseAButtonWhoseParticipantWasKilled) {
   }
   ASSERT_GT(child, 0);
   std::vector<ButtonEvent> events;
-  DdsInputs inputs(std::make_shared<Participant>(test_settings()), test_settings(),
+  DdsInputs inputs(DdsProcess::of(test_settings()), test_settings(),
                    [&](const ButtonEvent& event) { events.push_back(event); });
   const auto read_until = [&](std::size_t count) {
     return wait_until([&] {
@@ -192,7 +192,7 @@ TEST_F(Inputs, ReleaseAButtonThatNobodyRepeatsWithinTheTimeout) {
   DdsSettings settings = test_settings();
   settings.button_timeout = milliseconds(40);
   std::vector<ButtonEvent> events;
-  DdsInputs inputs(std::make_shared<Participant>(settings), settings,
+  DdsInputs inputs(DdsProcess::of(settings), settings,
                    [&](const ButtonEvent& event) { events.push_back(event); });
   Peer peer(settings);
   press_button(peer, "rt/glint/button");
@@ -209,7 +209,7 @@ TEST_F(Inputs, SayWhichToolsAreNamedToBeThereOrNot) {
   DdsSettings settings = test_settings();
   settings.tool_names = {"pen", "spare pen"};
   settings.accepts_tool_changes = true;
-  DdsInputs inputs(std::make_shared<Participant>(settings), settings, {},
+  DdsInputs inputs(DdsProcess::of(settings), settings, {},
                    [&](int tool, bool there) { named.emplace_back(tool, there); });
   Peer peer(settings);
   const dds_entity_t add = peer.writer(text_type(), "rt/glint/tool_add", Reliability::reliable,
@@ -293,7 +293,7 @@ TEST_F(Inputs, ReadInAThreadBesideASinkInOneDomain) {
   DdsSink sink(test_settings());
   std::mutex mutex;
   std::vector<ButtonEvent> events;
-  DdsInputs inputs(sink.participant(), test_settings(), [&](const ButtonEvent& event) {
+  DdsInputs inputs(sink.process(), test_settings(), [&](const ButtonEvent& event) {
     const std::lock_guard lock(mutex);
     events.push_back(event);
   });

@@ -15,6 +15,7 @@
 #include "platform/sinks/dds/network.hpp"
 #include "platform/sinks/dds/participant.hpp"
 #include "platform/sinks/dds/topic_names.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
 
 namespace glint {
 
