@@ -140,6 +140,23 @@ void CellParser::read_simulator(const toml::table* table) {
   }
 }
 
+AllowedInputs allowed_inputs(TomlReader& dds, const std::string& file) {
+  AllowedInputs allowed;
+  for (const std::string& name : dds.texts("allow")) {
+    const auto found = std::find(k_dds_input_names.begin(), k_dds_input_names.end(), name);
+    if (found == k_dds_input_names.end()) {
+      std::string all;
+      for (const char* one : k_dds_input_names) all += (all.empty() ? "" : ", ") + std::string(one);
+      throw InputError(file + ":" + std::to_string(dds.line_of("allow")) + ": dds.allow: \"" +
+                       name + "\"; expected names of inputs: " + all);
+    }
+    allowed.add(static_cast<DdsInput>(found - k_dds_input_names.begin()));
+  }
+  // Cells of recordings from before `allow` have this key.
+  if (dds.boolean("tool_changes", false)) allowed.add(DdsInput::tools);
+  return allowed;
+}
+
 void read_sinks(TomlReader& root, Cell& cell) {
   read_can(root.table("can"), cell);
   if (const toml::table* table = root.table("dds")) {
@@ -147,7 +164,7 @@ void read_sinks(TomlReader& root, Cell& cell) {
     cell.dds.on = reader.boolean("on", cell.dds.on);
     cell.dds.interface = reader.text("interface", cell.dds.interface);
     cell.dds.domain = static_cast<int>(reader.integer("domain", cell.dds.domain, 0, 232));
-    cell.dds.tool_changes = reader.boolean("tool_changes", cell.dds.tool_changes);
+    cell.dds.allow = allowed_inputs(reader, cell.file);
     reader.done();
   }
   if (const toml::table* table = root.table("buttons")) {

@@ -17,6 +17,7 @@
 #include "kernels/pose/bias_correction.hpp"
 #include "kernels/pose/tool.hpp"
 #include "kernels/units.hpp"
+#include "platform/cells/dds_input.hpp"
 #include "platform/cells/named_file.hpp"
 #include "platform/cells/tool_changes.hpp"
 #include "platform/formats/camera.hpp"
@@ -38,7 +39,7 @@ struct DdsCellSettings {
   bool on = true;
   std::string interface = "lo";
   int domain = 0;
-  bool tool_changes = false;  // by other participants: rt/glint/tool_add, tool_remove
+  AllowedInputs allow;  // from other participants
 };
 
 struct RecordSettings {

@@ -108,7 +108,7 @@ ordered_json tool_orders(const Cell& cell, const SessionResult& result) {
     if (added + removed > 0)
       list.push_back({{"tool", tool}, {"added", added}, {"removed", removed}});
   }
-  return {{"allowed", cell.dds.tool_changes}, {"by_tool", list}};
+  return {{"allowed", cell.dds.allow[DdsInput::tools]}, {"by_tool", list}};
 }
 
 void tool_order_rows(const ordered_json& orders) {
@@ -117,6 +117,15 @@ void tool_order_rows(const ordered_json& orders) {
                                      one.at("added").dump() + " times, removed " +
                                      one.at("removed").dump());
   }
+}
+
+ordered_json refusals_json(const InputRefusals& refusals) {
+  ordered_json list = ordered_json::object();
+  for (std::size_t i = 0; i < k_dds_inputs; ++i) {
+    list[k_dds_input_names[i]] = {{"not_allowed", refusals.not_allowed[i]},
+                                  {"too_fast", refusals.too_fast[i]}};
+  }
+  return list;
 }
 
 std::string released_text(std::uint64_t released) {
@@ -215,7 +224,8 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
         {"buttons", result.dds_received.buttons},
         {"tools", result.dds_received.tools},
         {"refused", result.dds_received.refused},
-        {"lost", result.dds_received.lost}}},
+        {"lost", result.dds_received.lost},
+        {"refused_by_name", refusals_json(result.dds_received.refusals)}}},
       {"recording", result.recording_file},
       {"recording_complete", result.recording.complete()},
       {"recording_ended_early", result.recording.ended_early},
@@ -337,6 +347,9 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                                  std::to_string(received.tools) + " tools; " +
                                  std::to_string(received.refused) + " refused" +
                                  released_text(received.released));
+  }
+  if (const std::string text = text_of(result.dds_received.refusals); !text.empty()) {
+    row("REFUSED over DDS", text);
   }
   tool_order_rows(summary.at("dds_tool_changes"));
   row("output_sha256", result.output_sha256);

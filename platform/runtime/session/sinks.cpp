@@ -51,7 +51,6 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
   settings.domain = cell.dds.domain;
   settings.interface = cell.dds.interface;
   settings.tool_names = names_of(cell.tools);
-  settings.accepts_tool_changes = cell.dds.tool_changes;
   settings.button_timeout = cell.button_timeout;
   settings.tick_period = tick_period(cell);
   settings.actuation_delay = cell.actuation_delay;
@@ -66,7 +65,7 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
 }  // namespace
 
 Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_offset_ns)
-    : out_(options.out), can_bus_load_(checked_bus_load(cell)) {
+    : out_(options.out), can_bus_load_(checked_bus_load(cell)), input_access_(cell.dds.allow) {
   CanSinkOptions can;
   can.directory = out_;
   can.unix_offset_ns = unix_offset_ns;
@@ -120,6 +119,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     settings.timing_faults = joined(options.timing_faults);
     settings.overruns = &overruns_;
     settings.losses = &losses_;
+    settings.access = &input_access_;
     settings.source = options.faults;
     settings.calibration = &calibration_notes_;
     if (cell.mapping && !cell.mapping->model.empty()) settings.robot = &robot_notes_;

@@ -73,6 +73,7 @@ class Sinks {
   bool by_rate_ = false;
   OverrunCounters overruns_;
   LossCounters losses_;
+  InputAccess input_access_;
   RobotTrackingStatus robot_notes_;
   CalibrationFindingsStore calibration_notes_;
   ToolRequests tool_requests_;

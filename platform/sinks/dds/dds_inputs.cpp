@@ -53,6 +53,7 @@ DdsInputs::DdsInputs(std::shared_ptr<DdsProcess> process, const DdsSettings& set
       on_button_(std::move(on_button)),
       on_tool_(std::move(on_tool)),
       button_timeout_(settings.button_timeout),
+      access_(settings.access),
       tool_names_(settings.tool_names),
       joints_(std::make_unique<graph::TripleBuffer<ReceivedJoints>>()),
       initial_pose_(std::make_unique<graph::TripleBuffer<ReceivedInitialPose>>()),
@@ -66,11 +67,8 @@ DdsInputs::DdsInputs(std::shared_ptr<DdsProcess> process, const DdsSettings& set
       add(text_type(), k_robot_description_topic, k_description, k_description_bytes);
   guess_reader_ = add(pose_covariance_type(), k_initial_pose_topic, k_guess, k_guess_bytes);
   const std::string& prefix = settings.topic_prefix;
-  if (settings.accepts_tool_changes) {
-    add_reader_ = add(text_type(), topic_under(prefix, k_tool_add_name), k_tool, k_tool_bytes);
-    remove_reader_ =
-        add(text_type(), topic_under(prefix, k_tool_remove_name), k_tool, k_tool_bytes);
-  }
+  add_reader_ = add(text_type(), topic_under(prefix, k_tool_add_name), k_tool, k_tool_bytes);
+  remove_reader_ = add(text_type(), topic_under(prefix, k_tool_remove_name), k_tool, k_tool_bytes);
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     buttons_[i].reader =
         add(bool_type(), topic_under(prefix, k_button_names[i]), k_button, k_button_bytes);
@@ -97,9 +95,11 @@ void DdsInputs::stop() {
 
 // Takes the available messages of a reader; `use(message)` returns whether it is valid.
 template <class Use>
-void DdsInputs::take_all(int reader, Use use) {
+void DdsInputs::take_all(DdsInput input, int reader, Use use) {
   ReceivedMessage message;
   for (int i = 0; i < k_messages_per_read_max && process_->take(reader, message); ++i) {
+    const bool is_message = message.kind == RecordKind::message;
+    if (is_message && access_ != nullptr && !access_->admits(input, now())) continue;
     if (!use(message)) count_up(invalid_);
   }
 }
@@ -109,19 +109,19 @@ void DdsInputs::read(Duration limit) {
   const auto is_message = [](const ReceivedMessage& one) {
     return one.kind == RecordKind::message;
   };
-  take_all(joints_reader_, [&](const ReceivedMessage& one) {
+  take_all(DdsInput::joint_states, joints_reader_, [&](const ReceivedMessage& one) {
     if (!is_message(one)) return true;
     if (!read_message(one.bytes, unix_minus_session_, now(), joints_->write_slot())) return false;
     joints_->publish(count_up(joints_count_), now().nanoseconds);
     return true;
   });
-  take_all(description_reader_, [&](const ReceivedMessage& one) {
+  take_all(DdsInput::robot_description, description_reader_, [&](const ReceivedMessage& one) {
     if (!is_message(one)) return true;
     if (!read_message(one.bytes, description_->write_slot())) return false;
     description_->publish(count_up(description_count_), now().nanoseconds);
     return true;
   });
-  take_all(guess_reader_, [&](const ReceivedMessage& one) {
+  take_all(DdsInput::initial_pose, guess_reader_, [&](const ReceivedMessage& one) {
     if (!is_message(one)) return true;
     if (!read_message(one.bytes, unix_minus_session_, now(), initial_pose_->write_slot())) {
       return false;
@@ -130,7 +130,6 @@ void DdsInputs::read(Duration limit) {
     return true;
   });
   for (int i = 0; i < k_button_count; ++i) take_button(static_cast<Button>(i));
-  if (remove_reader_ < 0) return;
   take_tools(remove_reader_, false);
   take_tools(add_reader_, true);
 }
@@ -139,7 +138,7 @@ void DdsInputs::read(Duration limit) {
 // hangs or is disconnected repeats nothing.
 void DdsInputs::take_button(Button button) {
   ButtonReader& button_reader = buttons_[static_cast<std::size_t>(button)];
-  take_all(button_reader.reader, [&](const ReceivedMessage& one) {
+  take_all(DdsInput::buttons, button_reader.reader, [&](const ReceivedMessage& one) {
     const Time time = now();
     if (one.kind == RecordKind::sender_left) {
       if (one.sender == 0 || one.sender == button_reader.sender) release(button, time);
@@ -169,7 +168,7 @@ void DdsInputs::release(Button button, Time time) {
 
 // Rejects names that are not among the run's tools.
 void DdsInputs::take_tools(int reader, bool there) {
-  take_all(reader, [&](const ReceivedMessage& one) {
+  take_all(DdsInput::tools, reader, [&](const ReceivedMessage& one) {
     if (one.kind == RecordKind::sender_left) return true;
     const auto found = std::find(tool_names_.begin(), tool_names_.end(), text_of(one.bytes));
     if (found == tool_names_.end()) return false;
@@ -189,6 +188,8 @@ ReceivedCounts DdsInputs::counts() const noexcept {
   counts.buttons = button_count_.load(std::memory_order_relaxed);
   counts.tools = tool_count_.load(std::memory_order_relaxed);
   counts.refused = invalid_.load(std::memory_order_relaxed);
+  if (access_ != nullptr) counts.refusals = access_->refusals();
+  counts.refused += counts.refusals.total();
   for (const int reader : readers_) {
     const ReaderLosses losses = process_->losses(reader);
     counts.refused += losses.refused;

@@ -2,10 +2,10 @@
 // robot's pose, the pen's buttons, and tool changes.
 //
 // States go to triple buffers, read as Latest<>: only the newest counts. Each change of a button
-// goes to a callback, and so does each tool change, if the settings allow them. A held button is
+// goes to a callback, and so does each tool change. A held button is
 // released when its sender leaves the domain, cleanly or by its lease, or is silent for the
 // settings' timeout. They come from the DDS process in serialised form. An oversized or invalid
-// message is rejected and counted.
+// message is rejected and counted; so is one that the settings' access control does not admit.
 #pragma once
 
 #include <array>
@@ -27,7 +27,8 @@ namespace glint {
 struct ReceivedCounts {
   // Received messages.
   std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0, tools = 0;
-  std::uint64_t refused = 0;
+  std::uint64_t refused = 0;   // all refused messages
+  InputRefusals refusals;      // of these, by access control
   std::uint64_t lost = 0;      // read too late
   std::uint64_t released = 0;  // buttons whose sender left or timed out
   [[nodiscard]] bool any() const {
@@ -74,7 +75,7 @@ class DdsInputs {
   };
 
   template <class Use>
-  void take_all(int reader, Use use);
+  void take_all(DdsInput input, int reader, Use use);
   void take_button(Button button);
   void release(Button button, Time time);
   void take_tools(int reader, bool there);
@@ -86,11 +87,12 @@ class DdsInputs {
   OnButton on_button_;
   OnTool on_tool_;
   Duration button_timeout_;
+  InputAccess* access_;
   std::vector<std::string> tool_names_;
   int joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
-  int add_reader_ = -1, remove_reader_ = -1;  // negative: not read
-  std::vector<int> readers_;                  // all of them
-  std::uint64_t arrivals_ = 0;                // handled
+  int add_reader_ = 0, remove_reader_ = 0;
+  std::vector<int> readers_;    // all of them
+  std::uint64_t arrivals_ = 0;  // handled
   std::array<ButtonReader, k_button_count> buttons_;
   std::unique_ptr<graph::TripleBuffer<ReceivedJoints>> joints_;
   std::unique_ptr<graph::TripleBuffer<ReceivedInitialPose>> initial_pose_;

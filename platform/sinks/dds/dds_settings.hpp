@@ -10,6 +10,7 @@
 #include "platform/runtime/rt/loss_counters.hpp"
 #include "platform/runtime/rt/overrun_counters.hpp"
 #include "platform/runtime/rt/source_faults.hpp"
+#include "platform/sinks/dds/input_access.hpp"
 #include "platform/sinks/record/button_event.hpp"
 #include "platform/tools/report/calibration_findings.hpp"
 
@@ -38,8 +39,8 @@ struct DdsSettings {
   std::vector<StaticTransform> static_transforms;  // all of tf_static
   Duration tick_period = milliseconds(4);
   Duration actuation_delay;  // from a tick to the time for which its pose is valid
-  // Accepts messages that add or remove the tools named above.
-  bool accepts_tool_changes = false;
+  // Access to the inputs (null: all are allowed at any rate; must outlive the inputs and the sink).
+  InputAccess* access = nullptr;
   Duration button_timeout = k_button_timeout;  // of a held button without repeated messages
   Duration unix_minus_session;                 // offset from a PoseSample's times to Unix time
   Duration poll_period = microseconds(500);    // of the sink's thread, for its ring

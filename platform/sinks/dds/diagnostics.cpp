@@ -95,6 +95,18 @@ void Diagnostics::add_process(std::uint64_t restarts, std::string_view how) {
   add_entry(k_error, keep("glint: DDS process"), keep("it " + std::string(how)), values);
 }
 
+void Diagnostics::add_inputs(const InputRefusals& refusals) {
+  std::vector<Value>& values = values_.emplace_back();
+  for (std::size_t i = 0; i < k_dds_inputs; ++i) {
+    const std::string name = k_dds_input_names[i];
+    values.push_back({keep(name + "_not_allowed"), keep(std::to_string(refusals.not_allowed[i]))});
+    values.push_back({keep(name + "_too_fast"), keep(std::to_string(refusals.too_fast[i]))});
+  }
+  const std::string refused = text_of(refusals);
+  add_entry(refused.empty() ? k_ok : k_warn, keep("glint: inputs"),
+            keep(refused.empty() ? "none refused" : refused), values);
+}
+
 void Diagnostics::add_source(const SourceFaults& faults, std::uint64_t published) {
   std::vector<Value>& values = values_.emplace_back();
   for (std::size_t k = 0; k < k_source_faults; ++k) {

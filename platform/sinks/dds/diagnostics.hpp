@@ -1,5 +1,5 @@
 // Message for /diagnostics: one entry per tool and one each for timing, losses, the DDS process,
-// source, robot and calibration.
+// inputs, source, robot and calibration.
 #pragma once
 
 #include <deque>
@@ -11,6 +11,7 @@
 #include "platform/runtime/rt/loss_counters.hpp"
 #include "platform/runtime/rt/overrun_counters.hpp"
 #include "platform/runtime/rt/source_faults.hpp"
+#include "platform/sinks/dds/input_access.hpp"
 #include "platform/sinks/dds/messages.hpp"
 #include "platform/tools/report/calibration_findings.hpp"
 
@@ -28,6 +29,8 @@ class Diagnostics {
   void add_losses(const LossCounters& losses);
   // The DDS process ended `restarts` times; `how`: the last time.
   void add_process(std::uint64_t restarts, std::string_view how);
+  // A warning names the refused inputs.
+  void add_inputs(const InputRefusals& refusals);
   // Faults of a live source: an error while no frame arrives, a warning if the number of faults
   // exceeds `published`, that of the previous message.
   void add_source(const SourceFaults& faults, std::uint64_t published);

@@ -207,6 +207,7 @@ void PosePublisher::write_diagnostics(const SinkCounts& counts) {
   if (const std::uint64_t restarts = process_->restarts(); restarts > 0) {
     text.add_process(restarts, process_->last_end());
   }
+  if (settings_.access != nullptr) text.add_inputs(settings_.access->refusals());
   if (settings_.source != nullptr) {
     text.add_source(*settings_.source, faults_published_);
     faults_published_ = settings_.source->total();

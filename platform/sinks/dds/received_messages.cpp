@@ -10,6 +10,7 @@ namespace glint {
 namespace {
 
 constexpr double k_unit_tolerance = 0.01;  // of a quaternion's norm, for rounded inputs
+constexpr double k_distance_max_m = 1000;  // a robot farther away is none of this cell
 
 // The text without its terminating zero; nothing if it does not end with its only zero.
 std::optional<std::string_view> checked_text(CdrReader& from) {
@@ -68,7 +69,8 @@ bool read_message(MessageBytes message, Duration unix_minus_session, Time arriva
   if (!read_header(from, unix_minus_session, arrival, header)) return false;
   to.pose = get_pose(from);
   const Quaternion& rotation = to.pose.rotation;
-  if (!to.pose.translation.allFinite() || !rotation.coeffs().allFinite()) return false;
+  if (!(to.pose.translation.norm() <= k_distance_max_m) || !rotation.coeffs().allFinite())
+    return false;
   if (std::abs(rotation.norm() - 1) > k_unit_tolerance) return false;
   to.pose.rotation = rotation.normalized();
   for (int i = 0; i < 36; ++i) {

@@ -23,6 +23,7 @@ class HeardJointsOfABoard : public DdsTest {
     cell_.record.file.clear();
     cell_.files = {"", ""};
     cell_.realtime = true;
+    cell_.dds.allow.add(DdsInput::joint_states);
     configure_sliding_box(files_.folder(), cell_);
     cell_.mapping->joints_lost_after = milliseconds(600'000);  // also on a slow machine
   }

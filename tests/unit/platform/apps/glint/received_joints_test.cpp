@@ -23,7 +23,8 @@ class HeardJointsOfARun : public DdsTest {
   [[nodiscard]] std::vector<std::string> run_of(const std::string& mapping) const {
     const std::string cell_file = files_.write(
         "cell.toml",
-        "tools = [\"pen\"]\n[simulator]\nduration_s = 600\n[background]\nperiod_ms = 1\n[robot]\n"
+        "tools = [\"pen\"]\n[dds]\nallow = [\"joint_states\"]\n[simulator]\nduration_s = "
+        "600\n[background]\nperiod_ms = 1\n[robot]\n"
         "position_mm = [600, 0, -400]\n[mapping]\nsource = \".\"\nperiod_ms = 100\n"
         "pictures_a_map = 1000\nstride = 8\nvoxels_max = 20_000\nmodel = "
         "\"robot.ply\"\njoints = [0]\n" +

@@ -15,7 +15,8 @@ using ButtonStatus = DdsTest;
 
 TEST_F(ButtonStatus, SaysWhatIsHeldFromTheNextTickOn) {
   const TemporaryFolder folder;
-  const Cell cell = default_cell();
+  Cell cell = default_cell();
+  cell.dds.allow.add(DdsInput::buttons);
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;

@@ -208,7 +208,6 @@ TEST_F(Inputs, SayWhichToolsAreNamedToBeThereOrNot) {
   std::vector<std::pair<int, bool>> named;
   DdsSettings settings = test_settings();
   settings.tool_names = {"pen", "spare pen"};
-  settings.accepts_tool_changes = true;
   DdsInputs inputs(DdsProcess::of(settings), settings, {},
                    [&](int tool, bool there) { named.emplace_back(tool, there); });
   Peer peer(settings);

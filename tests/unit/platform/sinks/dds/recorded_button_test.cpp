@@ -9,6 +9,8 @@
 #include "platform/runtime/session/sinks.hpp"
 #include "platform/runtime/session/tool_roster.hpp"
 #include "platform/sinks/record/recording_reader.hpp"
+#include "tests/unit/platform/sinks/dds/diagnostic_entry.hpp"
+#include "tests/unit/platform/sinks/dds/inputs.hpp"
 #include "tests/unit/platform/sinks/dds/isolated_network.hpp"
 #include "tests/unit/platform/sinks/dds/peer.hpp"
 #include "tests/unit/platform/sinks/dds/samples.hpp"
@@ -21,7 +23,8 @@ using RecordedButton = DdsTest;
 
 TEST_F(RecordedButton, StandsInARunsRecordingAtItsTime) {
   const TemporaryFolder folder;
-  const Cell cell = default_cell();
+  Cell cell = default_cell();
+  cell.dds.allow.add(DdsInput::buttons);
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
@@ -59,7 +62,7 @@ TEST_F(RecordedButton, StandsInARunsRecordingAtItsTime) {
 TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRosterWhereTheCellAllowsIt) {
   const TemporaryFolder folder;
   Cell cell = default_cell();
-  cell.dds.tool_changes = true;
+  cell.dds.allow.add(DdsInput::tools);
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
@@ -84,26 +87,67 @@ TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRosterWhereTheCellAllowsIt) 
   EXPECT_EQ(outcome.tool_change_counts[0].added, 0u);
 }
 
-// The sink creates the button readers after the tool readers. A peer that has discovered the last
-// one has discovered all.
-TEST_F(RecordedButton, NobodyReadsToolNamesUnlessTheCellAllowsIt) {
+// Every input that a run reads, in the order of DdsInput; the default cell allows none.
+TEST_F(RecordedButton, AParticipantWithoutAccessChangesNothingAndIsNamed) {
   const TemporaryFolder folder;
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
-  Sinks sinks(default_cell(), options, k_clock_start.nanoseconds);
+  const Cell cell = default_cell();
+  Sinks sinks(cell, options, k_clock_start.nanoseconds);
+  ToolRoster roster(cell, &sinks.tool_requests());
+  (void)roster.published().sample();
   Peer peer(test_settings());
-  const auto writer = [&](const TopicType& type, const char* topic) {
-    return peer.writer(type, topic, Reliability::reliable, Durability::volatile_data, 64);
+  const dds_entity_t diagnostics = peer.reader(diagnostics_type(), k_diagnostics_topic,
+                                               Reliability::reliable, Durability::volatile_data, 1);
+  ASSERT_TRUE(wait_until([&] { return has_writer(diagnostics); }));
+  const auto send = [&](const TopicType& type, const std::string& topic, const auto& message) {
+    const dds_entity_t writer =
+        peer.writer(type, topic, Reliability::reliable, Durability::transient_local, 64);
+    ASSERT_TRUE(wait_until([&] { return has_reader(writer); })) << topic;
+    ASSERT_EQ(dds_write(writer, &message), DDS_RETCODE_OK);
   };
-  const dds_entity_t add = writer(text_type(), "rt/glint/tool_add");
-  const dds_entity_t remove = writer(text_type(), "rt/glint/tool_remove");
-  const dds_entity_t finish = writer(bool_type(), "rt/glint/button_finish");
-  ASSERT_TRUE(wait_until([&] { return has_reader(finish); }));
-  EXPECT_FALSE(has_reader(add));
-  EXPECT_FALSE(has_reader(remove));
+  JointText joints({"elbow"}, {1});
+  send(joint_state_type(), "rt/joint_states", joints.message());
+  std::string text = "<robot/>", name = cell.tools.items[0].name.data(), frame = "hmd_world";
+  send(text_type(), "rt/robot_description", TextMessage{text.data()});
+  send(pose_covariance_type(), "rt/initialpose", guess_message(frame));
+  for (const char* button : {"button", "button_delete", "button_undo", "button_finish"}) {
+    send(bool_type(), topic_under("glint", button), BoolMessage{true});
+  }
+  for (const char* change : {"tool_add", "tool_remove"}) {
+    send(text_type(), topic_under("glint", change), TextMessage{name.data()});
+  }
+  ASSERT_TRUE(wait_until([&] { return sinks.inputs()->counts().refusals.total() == 9; }));
+  const ReceivedCounts counts = sinks.inputs()->counts();
+  EXPECT_EQ(counts.refusals.not_allowed, (std::array<std::uint64_t, k_dds_inputs>{1, 1, 1, 4, 2}));
+  EXPECT_EQ(counts.joints + counts.descriptions + counts.guesses + counts.buttons + counts.tools,
+            0u);
+  EXPECT_FALSE(sinks.inputs()->joints().sample());
+  EXPECT_FALSE(sinks.inputs()->description().sample());
+  EXPECT_FALSE(sinks.inputs()->initial_pose().sample());
+  EXPECT_FALSE(sinks.held_buttons().sample());
+  roster.apply_changes(Time{1});
+  EXPECT_FALSE(roster.published().sample()) << "no other set of tools";
+  const std::string expected =
+      "not allowed by the cell: joint_states 1, robot_description 1, initial_pose 1, buttons 4, "
+      "tools 2";
+  EXPECT_TRUE(wait_until([&] {
+    std::string found;
+    (void)take<DiagnosticsMessage>(diagnostics, 1, [&](const DiagnosticsMessage& message) {
+      found = entry_of(message, "glint: inputs").message;
+    });
+    return found == expected;
+  }));
   SinkOutcome outcome;
   sinks.close(outcome);
+  EXPECT_EQ(text_of(outcome.dds_received.refusals), expected);
+  RecordingReader reader(outcome.recording_file);
+  int events = 0;
+  while (const auto message = reader.next()) {
+    events += std::holds_alternative<ButtonEvent>(*message) ? 1 : 0;
+  }
+  EXPECT_EQ(events, 0);
 }
 
 }  // namespace

@@ -257,7 +257,7 @@ TEST_F(Sinks, TellWhereARobotThatIsFollowedNowStandsBesideTheOtherStaticTransfor
   const std::map<std::string, double> now{{"hmd_tof_optical", 0.0}, {"robot_base", 0.7}};
   // A reader that matches early may receive the previous pose first.
   for (int message = 0; message < 2 && transforms_x != now; ++message)
-    EXPECT_EQ(take<TfMessage>(reader, 1, store_transforms), 1u);
+    EXPECT_GE(take<TfMessage>(reader, 1, store_transforms), 1u);
   EXPECT_EQ(transforms_x, now);
 }
 
