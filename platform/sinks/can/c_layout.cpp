@@ -44,13 +44,16 @@ std::string c_layout_text() {
   std::string text =
       "/* Layout of a tool's CAN messages, written by `glint can c-layout`. An identifier is that "
       "of\n"
-      " * the tool's first message + offset. A signal: first bit (Intel order), width in bits. */\n"
+      " * the tool's first message + offset; of the heartbeat: the node's number + offset. A "
+      "signal:\n"
+      " * first bit (Intel order), width in bits. */\n"
       "#ifndef GLINT_CAN_LAYOUT_H\n#define GLINT_CAN_LAYOUT_H\n\n";
   add_define(text, "TOOL_STRIDE", std::to_string(k_can_tool_stride));
   std::set<std::string> named;
   std::string names;
   for (const CanMessageLayout& layout : k_can_messages) {
-    if (layout.rule != CanIdentifierRule::of_tool) continue;
+    const bool of_tool = layout.rule == CanIdentifierRule::of_tool;
+    if (!of_tool && layout.name != "Heartbeat") continue;
     const std::string message = macro_word(layout.name);
     text += '\n';
     add_define(text, message + "_OFFSET", std::to_string(layout.offset));

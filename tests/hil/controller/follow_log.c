@@ -48,15 +48,16 @@ static uint64_t hash_of(uint64_t hash, const glint_set* set) {
 
 void follow_log(const uint8_t* log, void (*put)(const char* text)) {
   static const char* const actions[] = {"follow", "ramp", "stop"};
-  static const char* const verdicts[] = {"ignored",     "partial",    "accepted",   "wrong_format",
-                                         "wrong_check", "incomplete", "repeated",   "jumped",
-                                         "no_pose",     "too_old",    "implausible"};
+  static const char* const verdicts[] = {
+      "ignored",  "partial", "accepted", "wrong_format", "wrong_check", "incomplete",
+      "repeated", "jumped",  "no_pose",  "too_old",      "implausible", "node_stopped"};
   const glint_settings settings = {.base = (uint32_t)number_at(log, 4),
                                    .fd = log[4] != 0,
                                    .cycle_us = (uint32_t)number_at(log + 8, 4),
                                    .speed_max = (uint32_t)number_at(log + 12, 4),
                                    .age_max = 1000,
-                                   .measured_max = 100000};
+                                   .measured_max = 100000,
+                                   .heartbeat = 0x720};
   glint_controller controller;
   glint_init(&controller, &settings);
   log += 16;

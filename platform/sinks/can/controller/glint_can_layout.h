@@ -1,5 +1,6 @@
 /* Layout of a tool's CAN messages, written by `glint can c-layout`. An identifier is that of
- * the tool's first message + offset. A signal: first bit (Intel order), width in bits. */
+ * the tool's first message + offset; of the heartbeat: the node's number + offset. A signal:
+ * first bit (Intel order), width in bits. */
 #ifndef GLINT_CAN_LAYOUT_H
 #define GLINT_CAN_LAYOUT_H
 
@@ -117,6 +118,10 @@
 #define GLINT_POSE_FD_MEASUREMENT_TIME_STEP 1 /* ns */
 #define GLINT_POSE_FD_FRAME_SEQUENCE 480, 32
 
+#define GLINT_HEARTBEAT_OFFSET 1792
+#define GLINT_HEARTBEAT_BYTES 1
+#define GLINT_HEARTBEAT_NODE_STATE 0, 8
+
 #define GLINT_VALID_INVALID 0
 #define GLINT_VALID_VALID 1
 #define GLINT_LEFT_OUT_X 0
@@ -131,5 +136,9 @@
 #define GLINT_REGISTRATION_GIVEN 1
 #define GLINT_REGISTRATION_ACCEPTED 2
 #define GLINT_REGISTRATION_REFUSED 3
+#define GLINT_NODE_STATE_BOOT_UP 0
+#define GLINT_NODE_STATE_STOPPED 4
+#define GLINT_NODE_STATE_OPERATIONAL 5
+#define GLINT_NODE_STATE_PRE_OPERATIONAL 127
 
 #endif

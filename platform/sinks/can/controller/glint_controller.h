@@ -45,6 +45,7 @@ typedef struct {
   uint32_t speed_max;    /* of the tip along an axis, mm/s, at most 1000000 */
   uint32_t age_max;      /* of a usable measurement, 0.1 ms: 1000 */
   uint32_t measured_max; /* longest time without state `measured`, us: 100000 */
+  uint32_t heartbeat;    /* its identifier, 0x700 + [can] node; 0: heartbeats are ignored */
 } glint_settings;
 
 typedef enum {
@@ -58,7 +59,8 @@ typedef enum {
   GLINT_JUMPED,       /* not 1 to 3 sets after the last one, or too soon for it; see README.md */
   GLINT_NO_POSE,      /* neither measured nor predicted, or out of range */
   GLINT_TOO_OLD,
-  GLINT_IMPLAUSIBLE, /* a step of the position beyond speed_max and 3 standard deviations */
+  GLINT_IMPLAUSIBLE,  /* a step of the position beyond speed_max and 3 standard deviations */
+  GLINT_NODE_STOPPED, /* a heartbeat "stopped": Glint restarted after a crash, or had to stop */
   GLINT_VERDICTS
 } glint_verdict;
 

@@ -81,9 +81,19 @@ static glint_verdict judge(glint_controller* c, uint64_t now_us) {
   return GLINT_ACCEPTED;
 }
 
+/* A heartbeat has no checksum: it may stop the motion, and never starts it. */
+static glint_verdict heartbeat(glint_controller* c, const glint_frame* frame) {
+  if (frame->fd || frame->length != GLINT_HEARTBEAT_BYTES) return GLINT_WRONG_FORMAT;
+  if (frame->data[0] != GLINT_NODE_STATE_STOPPED) return GLINT_IGNORED;
+  c->enabled = false;
+  return GLINT_NODE_STOPPED;
+}
+
 static glint_verdict receive(glint_controller* c, const glint_frame* frame, uint64_t now_us) {
   const uint32_t message = frame->identifier - c->settings.base;
   glint_set next = c->building;
+  if (c->settings.heartbeat != 0 && frame->identifier == c->settings.heartbeat)
+    return heartbeat(c, frame);
   if (frame->identifier < c->settings.base || (message == GLINT_POSE_FD_OFFSET) != c->settings.fd)
     return GLINT_IGNORED;
   const glint_verdict verdict = glint_decode(frame, message, &next);

@@ -14,6 +14,7 @@
 
 #include "kernels/wire/can_frames.hpp"
 #include "kernels/wire/e2e.hpp"
+#include "kernels/wire/node_frames.hpp"
 #include "tests/unit/kernels/wire/samples.hpp"
 #include "tests/unit/repetitions.hpp"
 
@@ -29,7 +30,8 @@ glint_settings settings_of(CanFormat format) {
           .cycle_us = k_cycle_us,
           .speed_max = 2000,
           .age_max = 1000,
-          .measured_max = 100'000};
+          .measured_max = 100'000,
+          .heartbeat = 0x720};
 }
 
 std::vector<CanFrame> frames_of(const PoseSample& sample, CanFormat format) {
@@ -139,6 +141,28 @@ TEST_P(ControllerOf, RefusesOtherLengthsAndFormats) {
                                       frame.data.data()};
     EXPECT_EQ(glint_decode(&of_another_tool, message, &set), GLINT_WRONG_CHECK);
   }
+}
+
+// Of the heartbeats, only "stopped" matters, and only one with the right length.
+TEST_P(ControllerOf, StopsByTheHeartbeatOfAStoppedNodeUntilItIsEnabled) {
+  Receiver r(GetParam());
+  r.start(50);
+  const std::uint64_t now = 49 * k_cycle_us;
+  for (const CanNodeState state :
+       {CanNodeState::boot_up, CanNodeState::operational, CanNodeState::pre_operational}) {
+    EXPECT_EQ(r.send(heartbeat_frame(32, state), now), GLINT_IGNORED);
+  }
+  EXPECT_EQ(r.send(heartbeat_frame(33, CanNodeState::stopped), now), GLINT_IGNORED);
+  CanFrame longer = heartbeat_frame(32, CanNodeState::stopped);
+  longer.length = 2;
+  EXPECT_EQ(r.send(longer, now), GLINT_WRONG_FORMAT);
+  EXPECT_EQ(glint_cycle(&r.controller, now), GLINT_FOLLOW);
+  EXPECT_EQ(r.send(heartbeat_frame(32, CanNodeState::stopped), now), GLINT_NODE_STOPPED);
+  EXPECT_EQ(glint_cycle(&r.controller, now), GLINT_STOP);
+  EXPECT_EQ(r.send(circle(50), now + k_cycle_us), GLINT_ACCEPTED);
+  EXPECT_EQ(glint_cycle(&r.controller, now + k_cycle_us), GLINT_STOP) << "a set enables nothing";
+  EXPECT_TRUE(glint_enable(&r.controller, now + k_cycle_us));
+  EXPECT_EQ(glint_cycle(&r.controller, now + k_cycle_us), GLINT_FOLLOW);
 }
 
 TEST_P(ControllerOf, FollowsUntilThreeCyclesAreMissedAndStopsAfterFive) {
