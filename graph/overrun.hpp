@@ -23,7 +23,12 @@ enum class OverrunPolicy : std::uint8_t {
   return names[static_cast<std::uint8_t>(policy) & 3];
 }
 
-enum class OverrunKind : std::uint8_t { none = 0, will_miss = 1, missed = 2 };
+enum class OverrunKind : std::uint8_t {
+  none = 0,
+  will_miss = 1,
+  missed = 2,
+  not_enabled = 3,  // no overrun: a person has not enabled the output since a crash
+};
 
 // Decision for one activation. A recording stores it as two bytes; {} means no overrun.
 struct OverrunDecision {

@@ -35,6 +35,9 @@ class FolderLock {
     ::unlink(path_.c_str());  // while the lock is held: the file is this process's own
     ::close(descriptor_);
   }
+  // Whether the last run in this folder ended without its destructors: a crash, SIGKILL, a power
+  // cut.
+  [[nodiscard]] bool after_crash() const noexcept { return after_crash_; }
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
@@ -62,6 +65,7 @@ class FolderLock {
     }, there{};
     if (::fstat(descriptor_, &held) == 0 && ::stat(path_.c_str(), &there) == 0 &&
         held.st_ino == there.st_ino) {
+      after_crash_ = held.st_size > 0;
       return true;
     }
     ::close(descriptor_);
@@ -77,6 +81,7 @@ class FolderLock {
 
   std::string path_;
   int descriptor_ = -1;
+  bool after_crash_ = false;
 };
 
 }  // namespace glint

@@ -3,7 +3,7 @@
 
 #include "platform/apps/glint/cell_option.hpp"
 #include "platform/apps/glint/run_commands.hpp"
-#include "platform/apps/glint/version.hpp"
+#include "platform/apps/version/version.hpp"
 #include "platform/exit_code.hpp"
 #include "platform/lab/baseline/baseline_method.hpp"
 #include "platform/lab/command_experiment.hpp"

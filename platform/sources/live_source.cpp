@@ -41,6 +41,7 @@ bool LiveSource::is_over(Time now) const noexcept {
 bool LiveSource::wait(ArrivedFrame& arrived) {
   std::optional<std::size_t> taken;
   while (!taken) {
+    note_advance();
     const Time now = monotonic_now();
     if (is_over(now)) {
       ended_ = true;  // later frames do not count as dropped

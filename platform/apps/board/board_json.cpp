@@ -77,6 +77,7 @@ Json as_json(const CompanionResult& result) {
       {"frame_overruns_noticed_ahead", result.frame_overruns.will_miss},
       {"tick_overruns", result.tick_overruns.total()},
       {"tick_overruns_noticed_ahead", result.tick_overruns.will_miss},
+      {"ticks_not_enabled", result.tick_overruns.not_enabled},
       {"frame_to_can_us", as_json(figures_of_totals(result.latencies))},
       {"computing_us", as_json(figures_of(result.latencies, &FrameToCan::computing))},
       {"sampling_us", as_json(figures_of(result.latencies, &FrameToCan::sampling))},

@@ -1,8 +1,11 @@
 // glint_board: Glint on a companion computer. Frames from memory or a live source; poses to CAN and
 // DDS; mapping and robot following in the background.
 #include <CLI/CLI.hpp>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,12 +16,15 @@
 #include "nodes/tracker.hpp"
 #include "platform/apps/board/board_json.hpp"
 #include "platform/apps/board/board_run.hpp"
+#include "platform/apps/board/stop_safe_file.hpp"
 #include "platform/apps/board/system_share.hpp"
+#include "platform/apps/version/version.hpp"
 #include "platform/budget/expected_board.hpp"
 #include "platform/exit_code.hpp"
 #include "platform/folder_lock.hpp"
 #include "platform/input_error.hpp"
 #include "platform/part_file.hpp"
+#include "platform/runtime/rt/service_notifier.hpp"
 #include "platform/runtime/session/losses.hpp"
 #include "platform/sources/open_live_source.hpp"
 #include "platform/stop_signals.hpp"
@@ -29,7 +35,7 @@ namespace {
 
 struct Arguments {
   std::string cell_file, frames_file, can, json_file, board;
-  bool with_dds = false, measure_system = false;
+  bool with_dds = false, measure_system = false, stop_safe_after_crash = false;
   CompanionOptions options;
 };
 
@@ -54,6 +60,18 @@ void write(const std::string& file, const nlohmann::ordered_json& figures) {
       !reason.empty()) {
     throw InputError(file + ": cannot be written: " + reason + "; expected a writable path");
   }
+}
+
+// Replaces the first '*' by the time in UTC: a service keeps the recordings of its earlier runs.
+std::string with_start_time(std::string file) {
+  const std::size_t star = file.find('*');
+  if (star == std::string::npos) return file;
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  std::array<char, 32> text{};
+  ::gmtime_r(&now, &utc);
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc);
+  return file.replace(star, 1, text.data(), length);
 }
 
 // Reasons for exit code 1, one per line.
@@ -104,6 +122,17 @@ int run(const Arguments& arguments) {
   }
   CompanionOptions options = arguments.options;
   options.stop = &stop_on_signals();
+  options.record = with_start_time(options.record);
+  ServiceNotifier service;
+  options.service = &service;
+  if (arguments.stop_safe_after_crash) {
+    const StopSafeFile file(options.out, lock.after_crash());
+    if (!file.removed()) {
+      std::fprintf(stderr, "stop_safe after a crash: remove %s to send poses\n",
+                   file.path().c_str());
+    }
+    options.enabled = [file] { return file.removed(); };
+  }
   options.bounds = bounds_on(arguments.board, cell);
   const CompanionResult result = run_on_frames(arguments.frames_file, std::move(cell), options);
   std::vector<std::string> failures = failures_of(result, options);
@@ -112,6 +141,9 @@ int run(const Arguments& arguments) {
   } catch (const InputError& error) {  // print the figures if the file fails
     write("", as_json(result));
     failures.emplace_back(error.what());
+  }
+  if (!service.refused().empty()) {
+    std::fprintf(stderr, "best effort: %s\n", service.refused().c_str());
   }
   for (const std::string& refused : result.refused) {
     std::fprintf(stderr, "best effort: %s\n", refused.c_str());
@@ -133,10 +165,14 @@ int main(int argc, char** argv) {
                  "CAN output, socketcan:IF or log:FILE; default: the cell's");
   app.add_option("--json", arguments.json_file, "file of the figures; default: standard output");
   app.add_option("--record", arguments.options.record,
-                 "recording of the run, at the cell's [record] level; default: none");
+                 "recording of the run, at the cell's [record] level; * in its name: the start "
+                 "time; default: none");
   app.add_option("--out", arguments.options.out, "folder of the CAN log and the recording");
   app.add_option("--core", arguments.options.core, "core of all threads");
   app.add_flag("--dds", arguments.with_dds, "publish over DDS by the cell's [dds]");
+  app.add_flag("--stop-safe-after-crash", arguments.stop_safe_after_crash,
+               "after a crash in --out, send no pose until a person removes its file stop_safe");
+  app.set_version_flag("--version", glint::version_text(), "version and commit");
   auto* const frames = app.add_option("--frames", arguments.frames_file,
                                       "loop of frames made by glint_board_frames; default: the "
                                       "cell's [source], " +

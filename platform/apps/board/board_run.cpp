@@ -31,6 +31,8 @@ CompanionResult run_companion(Cell cell, FrameSource& source, const CompanionOpt
   session.stop = options.stop;
   session.plan = schedule_on_one_core(cell, options.core, options.bounds);
   session.write_map = false;
+  session.service = options.service;
+  session.enabled = options.enabled;
   return {run_session(cell, source, session), 0, {}};
 }
 

@@ -5,11 +5,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "platform/apps/board/frame_loop.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/runtime/rt/service_notifier.hpp"
 #include "platform/runtime/session/frame_source.hpp"
 #include "platform/runtime/session/session.hpp"
 
@@ -28,6 +30,8 @@ struct CompanionOptions {
   std::string out = ".";  // folder of a CAN log, if the cell names one, and of the recording
   std::string record;     // file, at the cell's [record] level; empty: no recording
   NodeWcets bounds;
+  ServiceNotifier* service = nullptr;  // see SessionOptions
+  std::function<bool()> enabled;       // likewise
 };
 
 struct CompanionResult : SessionResult {

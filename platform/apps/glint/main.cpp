@@ -3,7 +3,7 @@
 #include "platform/apps/glint/commands.hpp"
 #include "platform/apps/glint/lab_program.hpp"
 #include "platform/apps/glint/run_commands.hpp"
-#include "platform/apps/glint/version.hpp"
+#include "platform/apps/version/version.hpp"
 #include "platform/exit_code.hpp"
 
 namespace {

@@ -2,6 +2,7 @@
 // same source serves live runs and runs in order.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -62,6 +63,11 @@ class FrameSource {
   [[nodiscard]] virtual bool wait(ArrivedFrame& arrived) = 0;
   virtual void release_pixels(const ArrivedFrame& arrived) noexcept = 0;
 
+  // Counter of a living frame thread: raised after each frame, and by wait() of a source whose
+  // frames may stay away at each of its wake-ups.
+  [[nodiscard]] const std::atomic<std::uint64_t>& advances() const noexcept { return advances_; }
+  void note_advance() noexcept { advances_.fetch_add(1, std::memory_order_relaxed); }
+
   // late(): whether the newest frame due at this time arrived late or has not arrived yet.
   // late_frames(): number of late frames. Both thread-safe.
   [[nodiscard]] virtual bool late(Time /*now*/) const noexcept { return false; }
@@ -93,6 +99,9 @@ class FrameSource {
   }
   // Call after the last wait().
   [[nodiscard]] virtual SourceReport report() { return {}; }
+
+ private:
+  std::atomic<std::uint64_t> advances_{0};
 };
 
 }  // namespace glint

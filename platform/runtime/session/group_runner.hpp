@@ -46,6 +46,7 @@ struct ActivationStart {
 struct OverrunCounts {
   std::uint64_t will_miss = 0, missed = 0;
   std::array<std::uint64_t, 4> by_policy{};
+  std::uint64_t not_enabled = 0;  // activations replaced by a person's missing release
   [[nodiscard]] std::uint64_t total() const { return will_miss + missed; }
 };
 
@@ -81,6 +82,7 @@ class GroupRunner {
   // Returns the overrun decision of this activation; {}: it was in time. Call finish_activation()
   // after it.
   [[nodiscard]] graph::OverrunDecision run(G& graph, const ActivationStart& start) noexcept {
+    ran_on_all_workers_ = true;
     if (!settings_.watch.on && traces_.empty() && settings_.injections.empty()) {
       run_plain(graph);
       return {};
@@ -108,8 +110,8 @@ class GroupRunner {
     return decision;
   }
 
-  // Replay: an activation with a recorded overrun ends after node `last`; -1: runs no node. Call
-  // finish_activation() after it.
+  // An activation whose decision is known ends after node `last`; -1: runs no node. In a replay:
+  // the recorded decision. Call finish_activation() after it.
   graph::OverrunDecision run_as(G& graph, graph::OverrunDecision recorded, int last) noexcept {
     ran_on_all_workers_ = !recorded.happened();
     if (ran_on_all_workers_) {
@@ -174,6 +176,10 @@ class GroupRunner {
   }
 
   void count(const graph::OverrunDecision& decision) noexcept {
+    if (decision.kind == graph::OverrunKind::not_enabled) {
+      ++counts_.not_enabled;
+      return;
+    }
     ++(decision.kind == graph::OverrunKind::missed ? counts_.missed : counts_.will_miss);
     ++counts_.by_policy[static_cast<std::size_t>(decision.policy)];
   }

@@ -96,6 +96,9 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
   const KeptFrames kept{source.frame_count(), source.ground_truths().size()};
   auto groups = std::make_unique<SessionGroups>(cell, options, kept, sinks, trace.get(), now,
                                                 unix_offset_ns, std::move(scene));
+  if (options.service != nullptr && sinks.recorder() != nullptr) {
+    options.service->watch(sinks.recorder()->passes());
+  }
   if (trace != nullptr) trace->start();
   groups->watch(source);
   source.start({cell.realtime, epoch, now});

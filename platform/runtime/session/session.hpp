@@ -12,6 +12,7 @@
 #include "kernels/pose/noise_estimate.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/runtime/rt/machine_check.hpp"
+#include "platform/runtime/rt/service_notifier.hpp"
 #include "platform/runtime/session/accuracy.hpp"
 #include "platform/runtime/session/background_group.hpp"
 #include "platform/runtime/session/frame_group.hpp"
@@ -31,12 +32,15 @@ struct SessionOptions : SinkOptions {
   const std::atomic<bool>* stop = nullptr;  // set: ends the run here, with complete results so far
   // Factory of the method that replaces the tracker if the cell asks for one; empty: none.
   std::function<std::unique_ptr<FrameMethod>(const Cell&)> method;
-  DepthPngReader read_png = nullptr;  // for a background's images; null: rejects PNG
-  RunSchedule plan;                   // cores, priorities, bounds; default: by rule
-  std::vector<Injection> injections;  // test delays
-  bool trace = false;                 // trace.spans in `out`
-  bool write_map = true;              // map.ply in `out`, if the cell has a background
-  std::optional<int> key_terminal;    // KeyTerminal's descriptor; its keys are buttons
+  DepthPngReader read_png = nullptr;   // for a background's images; null: rejects PNG
+  RunSchedule plan;                    // cores, priorities, bounds; default: by rule
+  std::vector<Injection> injections;   // test delays
+  bool trace = false;                  // trace.spans in `out`
+  bool write_map = true;               // map.ply in `out`, if the cell has a background
+  ServiceNotifier* service = nullptr;  // receives the state of a live run; null: no service
+  // Whether a live run may send poses, since a crash; asked every 50 ms. Empty: always.
+  std::function<bool()> enabled;
+  std::optional<int> key_terminal;  // KeyTerminal's descriptor; its keys are buttons
 };
 
 struct SessionResult : SinkOutcome {

@@ -34,6 +34,7 @@ class SessionGroups {
 
   void process(const ArrivedFrame& arrived) noexcept;                  // frame thread
   void tick(std::uint64_t number, Time nominal, Time woken) noexcept;  // tick thread
+  void enable(bool enabled) noexcept { tick_.enable(enabled); }        // see TickGroup
   // Call instead of the next tick: see TickGroup.
   void stop_safe() noexcept { tick_.stop_safe(); }
 

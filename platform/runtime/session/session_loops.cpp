@@ -7,9 +7,11 @@
 #include <thread>
 
 #include "platform/runtime/rt/allocation_counter.hpp"
+#include "platform/runtime/rt/clock.hpp"
 #include "platform/runtime/rt/page_faults.hpp"
 #include "platform/runtime/rt/periodic_loop.hpp"
 #include "platform/runtime/rt/real_time_thread.hpp"
+#include "platform/runtime/rt/service_notifier.hpp"
 #include "platform/runtime/session/release_order.hpp"
 #include "platform/runtime/session/session_groups.hpp"
 #include "platform/sinks/dds/topic_names.hpp"
@@ -93,11 +95,18 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
               const SessionOptions& options, SessionResult& result) {
   std::atomic<bool> frames_done{false}, ran_away{false};
   std::atomic<std::int64_t> reached_ns{0}, end_ns{0};  // last tick; end once frames_done
+  std::atomic<std::uint64_t> ticks{0};
   const auto ends = [&] { return stopped(options) || ran_away; };
   const std::uint64_t allocations_before = AllocationCounter::count();
   const std::uint64_t faults_before = PageFaultCounter::count();
   const auto after_epoch = [epoch](Time monotonic) { return Time{} + (monotonic - epoch); };
 
+  ServiceNotifier* const service = options.service;
+  if (service != nullptr) {
+    service->watch(source.advances());
+    service->watch(ticks);
+  }
+  if (options.enabled) groups.enable(options.enabled());
   PeriodicLoop loop(epoch, tick_period_of(cell));
   WakeUpLog wake_ups(WakeUpLog::k_entries_max);
   const RunSchedule& plan = options.plan;
@@ -107,6 +116,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
       while (!ends() && source.wait(arrived)) {
         groups.process(arrived);
         source.release_pixels(arrived);
+        source.note_advance();
       }
       end_ns = (arrived.frame.arrival + cell.lost_after).nanoseconds;
     });
@@ -125,7 +135,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
         if (frames_done && (nominal.nanoseconds > end_ns || stopped(options))) break;
         groups.tick(tick->number, nominal, after_epoch(tick->woken));
         wake_ups.add((tick->woken - tick->nominal).nanoseconds);
-        ++result.ticks;
+        ++ticks;
         reached_ns = nominal.nanoseconds;
       }
     });
@@ -147,12 +157,19 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
       options.progress(std::min(reached_s, source.delivered_part() * all_s), all_s);
     }
     groups.apply_changes(Time{reached_ns});
+    if (options.enabled) groups.enable(options.enabled());
+    if (service != nullptr && ticks > 0) {
+      service->ready();
+      service->feed(monotonic_now());
+    }
     print_robot_warnings(groups, printed);
     print_source_faults(source.faults(), printed_faults);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
+  if (service != nullptr) service->stopping();
   frame_thread.join();
   tick_thread.join();
+  result.ticks = static_cast<std::int64_t>(ticks);
   ended = true;
   if (background_thread) background_thread->join();
   if (ran_away) result.fault = k_no_sleep_message;

@@ -13,6 +13,14 @@ namespace glint {
 
 template class GroupRunner<Output>;
 
+namespace {
+
+// PredictTools still runs: its samples have the buttons and the newest frame's time.
+constexpr graph::OverrunDecision k_not_enabled{graph::OverrunKind::not_enabled,
+                                               graph::OverrunPolicy::stop_safe, 0};
+
+}  // namespace
+
 TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates,
                      graph::TripleBuffer<RobotFrame>& robot,
                      graph::TripleBuffer<PenButtons>& buttons, Clock now, TickSinks sinks,
@@ -54,6 +62,7 @@ void TickGroup::run(const Now& now, Time woken, const graph::OverrunDecision* re
   output_->input<Now>() = now;
   // State of PackCan before the tick; restored if its frames do not leave.
   const PackCan previous_state = output_->node<PackCan>();
+  if (recorded == nullptr && !enabled_) recorded = &k_not_enabled;
   overrun_ = recorded != nullptr ? runner_->run_as(*output_, *recorded, recorded->after_node)
                                  : runner_->run(*output_, {group_.choice().activation, now.number,
                                                            now.tick, woken, carried_sequence()});
@@ -87,7 +96,11 @@ void TickGroup::stop_safe() noexcept {
 }
 
 void TickGroup::compute_substitute(const Now& now) noexcept {
-  (void)own_notes_.push({k_tick_group, overrun_});
+  if (overrun_.kind == graph::OverrunKind::not_enabled) {
+    *in_time_ = output_->output<PoseSamples>();
+  } else {
+    (void)own_notes_.push({k_tick_group, overrun_});
+  }
   samples_ = substitute_.get();
   frames_ = substitute_frames_.get();
   substitute_frames_->count = 0;
@@ -140,9 +153,20 @@ bool TickGroup::lacks_measurement() const noexcept {
 
 void TickGroup::send(const Now& now, Time woken) noexcept {
   send_poses(woken);
-  for (const CanFrame& frame : frames_->frames().subspan(pose_frames())) send_one(frame, now_());
+  for (const CanFrame& frame : frames_->frames().subspan(pose_frames())) {
+    send_one(with_node_state(frame), now_());
+  }
   send_emergency(now.tick);
   runner_->add_span(k_span_sent, woken, now_());
+}
+
+// While not enabled, the heartbeat after the boot-up message is "stopped".
+CanFrame TickGroup::with_node_state(const CanFrame& frame) const noexcept {
+  const CanFrame stopped = heartbeat_frame(node_, CanNodeState::stopped);
+  const bool replaced = overrun_.kind == graph::OverrunKind::not_enabled &&
+                        frame.identifier == stopped.identifier &&
+                        frame.data[0] != static_cast<std::uint8_t>(CanNodeState::boot_up);
+  return replaced ? stopped : frame;
 }
 
 void TickGroup::send_poses(Time woken) noexcept {

@@ -2,6 +2,7 @@
 // Sends the frames at once; passes samples to DDS, to the recorder and to the output hash.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -53,6 +54,8 @@ class TickGroup {
   // not published. tick_as() runs the tick, with the recorded decision instead of the clock's.
   [[nodiscard]] bool release_as(const ChoiceRecord& recorded) noexcept;
   void tick_as(std::uint64_t number, const ChoiceRecord& recorded) noexcept;
+  // While not enabled, each tick sends `stop_safe` and the heartbeat "stopped". From any thread.
+  void enable(bool enabled) noexcept { enabled_ = enabled; }
   // Call when no tick can follow: sends the heartbeat "stopped".
   void stop_safe() noexcept;
 
@@ -76,6 +79,7 @@ class TickGroup {
   void compute_substitute(const Now& now) noexcept;
   void send(const Now& now, Time woken) noexcept;
   void send_poses(Time woken) noexcept;
+  [[nodiscard]] CanFrame with_node_state(const CanFrame& frame) const noexcept;
   void send_emergency(Time tick) noexcept;
   [[nodiscard]] std::uint64_t carried_sequence() const noexcept;
   bool send_one(const CanFrame& frame, Time time) noexcept;
@@ -103,6 +107,7 @@ class TickGroup {
   std::int64_t unix_offset_ns_;
   LossMonitor losses_;
   SentTicks sent_;
+  std::atomic<bool> enabled_{true};
   FrameSource* source_ = nullptr;
   std::uint64_t ticks_source_late_ = 0;
   Sha256 hash_;

@@ -86,7 +86,7 @@ std::optional<ChoiceRecord> read_choice(MessageBytes bytes) {
   const unsigned policy = overrun / k_overrun_kinds;
   choice.overrun = {static_cast<graph::OverrunKind>(kind),
                     static_cast<graph::OverrunPolicy>(policy), from.get<std::uint8_t>()};
-  if (from.failed() || kind < 1 || kind > static_cast<unsigned>(graph::OverrunKind::missed) ||
+  if (from.failed() || kind < 1 ||
       policy > static_cast<unsigned>(graph::OverrunPolicy::stop_safe)) {
     return std::nullopt;
   }

@@ -178,6 +178,7 @@ void Recorder::run() {
 
 // Writes the offer with the next number, from any lane. Returns false if it is still being filled.
 bool Recorder::write_next() {
+  passes_.fetch_add(1, std::memory_order_relaxed);
   for (RecorderLane& lane : lanes_) {
     const OfferSlot offer = lane.ring_.front();
     if (offer.empty() || offer.ticket != next_) continue;

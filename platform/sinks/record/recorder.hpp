@@ -83,6 +83,9 @@ class Recorder {
   // Dropped offers, and messages lost by a failed write; from any thread.
   [[nodiscard]] std::uint64_t lost() const noexcept;
 
+  // Raised by the writing thread at each search for offers: every millisecond, or after a write.
+  [[nodiscard]] const std::atomic<std::uint64_t>& passes() const noexcept { return passes_; }
+
   // Call before close(); not from a real-time thread.
   void add_closing_fact(const std::string& name, const std::string& value);
 
@@ -100,6 +103,7 @@ class Recorder {
   alignas(64) std::atomic<std::uint64_t> ticket_{0};
   std::uint64_t next_ = 0;
   std::atomic<std::uint64_t> not_written_{0};
+  std::atomic<std::uint64_t> passes_{0};
   std::atomic<bool> ending_{false};
   std::map<std::string, std::string> closing_facts_;
   RecordingOutcome outcome_;

@@ -131,7 +131,7 @@ TEST(Recording, RefusesAnOverrunThatIsNoneOfItsKinds) {
   EXPECT_TRUE(read_choice(writer.bytes()).has_value());
   EXPECT_FALSE(read_choice(writer.bytes().first(writer.bytes().size() - 1)).has_value());
   ChoiceRecord foreign = sample_choice(3);
-  foreign.overrun.kind = static_cast<graph::OverrunKind>(3);
+  foreign.overrun.kind = static_cast<graph::OverrunKind>(4);
   CdrWriter other;
   write_message(other, foreign, {});
   EXPECT_FALSE(read_choice(other.bytes()).has_value());

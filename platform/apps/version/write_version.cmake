@@ -17,7 +17,7 @@ if(GIT)
 endif()
 file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[
 // Made by write_version.cmake.
-#include "platform/apps/glint/version.hpp"
+#include "platform/apps/version/version.hpp"
 
 namespace glint {
 
