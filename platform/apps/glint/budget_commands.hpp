@@ -3,9 +3,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "platform/shards/sharded_work.hpp"
+
 namespace glint {
 
-void add_budget_measure(CLI::App& budget, int& exit_code);
+void add_budget_measure(CLI::App& budget, int& exit_code, ShardedWork& work);
 void add_budget_curve(CLI::App& budget, int& exit_code);
 void add_budget_prove(CLI::App& budget, int& exit_code);
 void add_budget_schedule(CLI::App& budget, int& exit_code);

@@ -10,6 +10,7 @@
 #include "platform/apps/glint/measure_request.hpp"
 #include "platform/apps/glint/output_file.hpp"
 #include "platform/apps/glint/progress.hpp"
+#include "platform/apps/glint/shard_option.hpp"
 #include "platform/budget/expected_board.hpp"
 #include "platform/budget/measure/measure_result.hpp"
 #include "platform/in_range.hpp"
@@ -26,6 +27,7 @@ struct MeasureCommand {
   std::uint64_t inputs = 10'000;
   double margin_percent = 5, ns_per_instruction = 1;
   int jobs = 0, passes = 1;
+  Pieces piece;
 };
 
 MeasureRequest request_of(const MeasureCommand& command) {
@@ -34,6 +36,7 @@ MeasureRequest request_of(const MeasureCommand& command) {
   request.kernel = command.kernel;
   request.cache = command.cache;
   request.inputs = command.inputs;
+  request.piece = command.piece;
   return request;
 }
 
@@ -156,6 +159,11 @@ int measure_costs(const MeasureCommand& command) {
   if (request.count_instructions && command.passes > 1) {
     throw InputError("--passes: instruction counts repeat exactly; expected it with --count time");
   }
+  if (!request.count_instructions && command.piece.work->is_shard()) {
+    throw InputError(
+        "--shard: times of other machines or moments do not repeat; expected "
+        "--count instructions");
+  }
   const BoardExpectation expected = expected_board();
   Board board;
   if (!command.board.empty()) board = load_board(command.board, expected, BoardUse::analyse);
@@ -167,6 +175,7 @@ int measure_costs(const MeasureCommand& command) {
   }
 
   const Observations seen = observe_in_passes(request, command.passes);
+  if (command.piece.work->finish()) return 0;
   Measurement measurement;
   measurement.arch = command.arch;
   measurement.cache = command.cache;
@@ -199,11 +208,12 @@ int measure_costs(const MeasureCommand& command) {
 
 }  // namespace
 
-void add_budget_measure(CLI::App& budget, int& exit_code) {
+void add_budget_measure(CLI::App& budget, int& exit_code, ShardedWork& work) {
   CLI::App* command = budget.add_subcommand(
       "measure", "Measure the cost of each kernel's loops, and validate the bound from it");
   auto arguments = std::make_shared<MeasureCommand>();
   arguments->arch = k_own_arch;
+  arguments->piece = {&work};
   command->footer(
       "Example: glint budget measure --count instructions --arch arm64 --json measure.json\n"
       "Costs are an upper envelope of one half of the inputs with a margin, validated on the "
@@ -249,6 +259,7 @@ void add_budget_measure(CLI::App& budget, int& exit_code) {
   command->add_option("--measure-program", arguments->program,
                       "path of glint_measure; default: beside glint");
   command->add_option("--json", arguments->json, "file of the figures");
+  add_shard_option(*command, work);
   command->callback([arguments, &exit_code] { exit_code = measure_costs(*arguments); });
 }
 

@@ -23,6 +23,8 @@
 #include "platform/apps/glint/run_commands.hpp"
 #include "platform/apps/glint/run_output.hpp"
 #include "platform/apps/glint/run_report.hpp"
+#include "platform/apps/glint/shard_option.hpp"
+#include "platform/apps/glint/track_folder.hpp"
 #include "platform/apps/glint/view_option.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/folder_lock.hpp"
@@ -60,6 +62,7 @@ struct RunArguments {
   std::string source, kind;
   ReadTolerance tolerance;
   BaselineFactory baseline;
+  bool one_of_many = false;  // a recording of a folder: its table is not printed
 };
 
 Cell cell_of(const RunArguments& arguments) {
@@ -118,21 +121,21 @@ bool written(const std::function<void()>& write, SessionResult& result) {
 }
 
 // Writes the figures first, the plots last.
-int report(const Cell& cell, const SessionOptions& options, const std::string& json_file,
+int report(const Cell& cell, const SessionOptions& options, const RunArguments& arguments,
            const FoxgloveServer* view, SessionResult& result) {
   const auto write_summary = [&] {
     nlohmann::ordered_json summary = summary_of(cell, options.plan, result);
     if (view != nullptr) summary["view"] = view_json(view->counts());
     if (result.headset) summary["headset"] = headset_json(*result.headset);
-    write_json(json_file, summary);
+    write_json(arguments.json, summary);
   };
   (void)written(write_summary, result);
-  print_table(summary_of(cell, options.plan, result), result);
+  if (!arguments.one_of_many) print_table(summary_of(cell, options.plan, result), result);
   if (view != nullptr) print_view(view->counts());
   if (result.headset) print_headset(*result.headset);
   const std::size_t printed = result.files.size();
   const bool plotted = written([&] { draw_plots(options.out, result); }, result);
-  print_files(result, printed);
+  if (!arguments.one_of_many) print_files(result, printed);
   if (!plotted) (void)written(write_summary, result);
   const std::vector<std::string> failures = failures_of(result);
   std::fflush(stdout);
@@ -185,7 +188,27 @@ int run(const RunArguments& arguments) {
     headset->close();
     result.headset = headset->counts();
   }
-  return report(cell, options, arguments.json, view.get(), result);
+  return report(cell, options, arguments, view.get(), result);
+}
+
+int track(const RunArguments& arguments, ShardedWork& work) {
+  if (arguments.method != "glint" && !arguments.baseline) start_lab();
+  const std::vector<std::string> names = recordings_below(arguments.source, arguments.kind);
+  if (names.empty()) {
+    if (work.is_shard())
+      throw InputError("--shard: " + arguments.source +
+                       " is one recording; expected a folder of them");
+    return run(arguments);
+  }
+  const auto track_one = [&](const std::string& name, const std::string& out) {
+    RunArguments one = arguments;
+    one.source = arguments.source + "/" + name;
+    one.out = out;
+    one.json = out + "/" + k_summary_file;
+    one.one_of_many = true;
+    return run(one);
+  };
+  return track_folder({names, arguments.out, arguments.json}, track_one, work);
 }
 
 // Adds the options of both commands.
@@ -251,7 +274,7 @@ void add_run(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-void add_track(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
+void add_track(CLI::App& app, int& exit_code, ShardedWork& work, const BaselineFactory& baseline) {
   CLI::App* command = app.add_subcommand(
       "track", "Track recorded frames as fast as possible: poses, CAN log, plots");
   auto arguments = std::make_shared<RunArguments>();
@@ -265,16 +288,18 @@ void add_track(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
       "SOURCE: a recording of `glint run` or `glint simulate` (default cell: the recording's\n"
       "own), a ROS 2 bag (MCAP), a folder with frames.csv, a capture of StreamRecorder or a file "
       "of\n"
-      "hl2ss (platform/sources/README.md).");
+      "hl2ss (platform/sources/README.md). A folder of these: each is tracked into a folder of\n"
+      "its own in --out, by the same options.");
   command->add_option("SOURCE", arguments->source, "recorded frames; default: the cell's [source]");
   command->add_option("--kind", arguments->kind,
                       "kind of SOURCE: " + recorded_kinds() + "; default: detected");
   add_common(*command, *arguments);
   command->add_flag("--allow-truncated", arguments->tolerance.truncated,
                     "read a truncated or damaged recording; exit code 1");
-  command->callback([arguments, &exit_code] {
+  add_shard_option(*command, work);
+  command->callback([arguments, &exit_code, &work] {
     arguments->tolerance.incomplete = arguments->tolerance.truncated;
-    exit_code = run(*arguments);
+    exit_code = track(*arguments, work);
   });
 }
 

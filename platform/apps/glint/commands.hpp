@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "platform/shards/sharded_work.hpp"
+
 namespace glint {
 
 void add_replay(CLI::App& app, int& exit_code);
@@ -16,6 +18,6 @@ void add_path(CLI::App& app, int& exit_code);
 void add_inspect(CLI::App& app, int& exit_code);
 void add_can(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
-void add_budget(CLI::App& app, int& exit_code);
+void add_budget(CLI::App& app, int& exit_code, ShardedWork& work);
 
 }  // namespace glint

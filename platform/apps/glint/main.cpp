@@ -1,8 +1,12 @@
 // glint COMMAND: main program of the tracker and its tools.
+#include <string>
+#include <vector>
+
 #include "platform/apps/glint/cell_option.hpp"
 #include "platform/apps/glint/commands.hpp"
 #include "platform/apps/glint/lab_program.hpp"
 #include "platform/apps/glint/run_commands.hpp"
+#include "platform/apps/glint/shard_option.hpp"
 #include "platform/apps/version/version.hpp"
 #include "platform/exit_code.hpp"
 
@@ -26,8 +30,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", glint::version_text(), "version and commit");
   app.footer("Example: glint run --out out --json out/summary.json");
   int exit_code = 0;
+  glint::ShardedWork work({argv + 1, argv + argc});
+  std::vector<std::string> merged;
   glint::add_run(app, exit_code);
-  glint::add_track(app, exit_code);
+  glint::add_track(app, exit_code, work);
   glint::add_replay(app, exit_code);
   glint::add_simulate(app, exit_code);
   add_experiment(app);
@@ -39,10 +45,11 @@ int main(int argc, char** argv) {
   glint::add_inspect(app, exit_code);
   glint::add_can(app, exit_code);
   glint::add_export(app, exit_code);
-  glint::add_budget(app, exit_code);
+  glint::add_budget(app, exit_code, work);
+  glint::add_merge(app, work, merged);
   glint::add_cell_check(app);
   return glint::exit_code_of(app, "glint", [&] {
-    app.parse(argc, argv);
+    glint::parse_command(app, argc, argv, merged);
     return exit_code;
   });
 }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "platform/runtime/session/session.hpp"
+#include "platform/shards/sharded_work.hpp"
 
 namespace glint {
 
@@ -11,6 +12,7 @@ namespace glint {
 using BaselineFactory = decltype(SessionOptions::method);
 
 void add_run(CLI::App& app, int& exit_code, const BaselineFactory& baseline = {});
-void add_track(CLI::App& app, int& exit_code, const BaselineFactory& baseline = {});
+void add_track(CLI::App& app, int& exit_code, ShardedWork& work,
+               const BaselineFactory& baseline = {});
 
 }  // namespace glint

@@ -48,12 +48,16 @@ class MeasuringRun {
   Observations run(const std::function<void(int, int)>& progress) {
     Observations all;
     const std::vector<std::string> names = list(all.build);
+    std::vector<std::string> own;  // those of this shard
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (request_.piece.computes(static_cast<int>(i))) own.push_back(names[i]);
+    }
     std::map<int, std::string> running;
     std::size_t next = 0;
     int done = 0;
-    while (next < names.size() || !running.empty()) {
-      while (next < names.size() && static_cast<int>(running.size()) < request_.jobs) {
-        running[start(command_for(names[next]), names[next])] = names[next];
+    while (next < own.size() || !running.empty()) {
+      while (next < own.size() && static_cast<int>(running.size()) < request_.jobs) {
+        running[start(command_for(own[next]), own[next])] = own[next];
         ++next;
       }
       const EndedProgram ended = wait_for_program();
@@ -61,9 +65,19 @@ class MeasuringRun {
       if (which == running.end()) continue;
       check(ended.status, which->second);
       running.erase(which);
-      progress(++done, static_cast<int>(names.size()));
+      progress(++done, static_cast<int>(own.size()));
     }
-    for (const std::string& name : names) all.kernels.push_back(read(name));
+    for (const std::string& name : names) {
+      const Observations one = request_.piece([&] {
+        return Observations{all.build, {read(name)}};
+      });
+      if (one.kernels.empty()) continue;
+      if (one.build != all.build) {
+        throw InputError(name + ": measured in build \"" + one.build + "\"; expected " +
+                         request_.program + " of build \"" + all.build + "\"");
+      }
+      all.kernels.push_back(one.kernels.front());
+    }
     return all;
   }
 

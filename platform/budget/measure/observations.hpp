@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/budget/measure/input_numbers.hpp"
+#include "platform/shards/sharded_work.hpp"
 #include "schedules/envelope.hpp"
 
 namespace glint {
@@ -34,6 +35,7 @@ struct MeasureRequest {
   std::string cache = "warm", load = "none";
   std::uint64_t inputs = 10'000;
   int jobs = 1;
+  Pieces piece;  // runs each kernel
 };
 
 struct Observations {
@@ -43,6 +45,7 @@ struct Observations {
 
 // Runs the program once per kernel in a temporary folder, without environment and without address
 // randomisation, so that its memory layout is the same in every run. Calls progress(done, all).
+// A shard returns its own kernels only.
 // Throws InputError for errors that a user can correct, MissingDevice if the emulator or the
 // program does not exist.
 [[nodiscard]] Observations measure(const MeasureRequest& request,

@@ -61,7 +61,7 @@ ExperimentCase judged(const AcquisitionCase& one, const CaseOptions& options) {
   double found_ms = 0, fresh = 100;
   for (int i = 0; i < seeds; ++i) {
     const auto seed = options.seed + static_cast<std::uint64_t>(i);
-    for (const Acquisition& tool : acquire(one, frames, seed)) {
+    for (const Acquisition& tool : options.piece([&] { return acquire(one, frames, seed); })) {
       runs += tool.visible ? 1 : 0;
       gross += tool.gross;
       for (std::size_t reason = 0; reason < missed.size(); ++reason)

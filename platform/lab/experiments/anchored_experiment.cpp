@@ -31,7 +31,7 @@ struct DriftRun {
   int aligning, judged;
 };
 
-void follow(const DriftRun& run, MethodRecord& record) {
+MethodSamples drift_samples(const DriftRun& run) {
   sim::Scenario scenario =
       run.kind == ExperimentKind::still ? sim::experiment_static() : sim::experiment_dynamic(0);
   scenario.seed += run.seed - 1;
@@ -39,7 +39,7 @@ void follow(const DriftRun& run, MethodRecord& record) {
   const Tool tool = scenario.tools.front().tool;
   const sim::Simulator simulator(with_reference(std::move(scenario)));
   GlintChain chain(simulator.scenario().camera, ChainSetup{{tool, reference_body()}, 1, {}});
-  record.begin_run();
+  MethodRecord record(tool, simulator.scenario().reference);
   sim::SimFrame frame;
   const int begin = sim::k_aligning_frames - run.aligning,
             end = std::min(sim::k_aligning_frames + run.judged, simulator.frame_count());
@@ -50,20 +50,21 @@ void follow(const DriftRun& run, MethodRecord& record) {
         i < sim::k_aligning_frames ? &MethodRecord::take_aligning : &MethodRecord::add_evaluated;
     (record.*take)(frame, chain.followed(), 0);
   }
+  return record.samples();
 }
 
 ExperimentCase judged(ExperimentKind kind, double drift, const CaseOptions& options,
                       const std::function<void()>& step) {
-  const sim::Scenario any = sim::experiment_static();
-  MethodRecord record("glint", any.tools.front().tool, any.reference);
+  MethodSamples samples;
   const int seeds = options.quick ? 1 : k_random_seeds;
   for (int i = 0; i < seeds; ++i, step()) {
-    follow(
-        {kind, drift, options.seed + static_cast<std::uint64_t>(i),
-         options.quick ? k_aligning_quick : k_aligning, options.quick ? k_judged_quick : k_judged},
-        record);
+    samples.add_run(options.piece([&] {
+      return drift_samples({kind, drift, options.seed + static_cast<std::uint64_t>(i),
+                            options.quick ? k_aligning_quick : k_aligning,
+                            options.quick ? k_judged_quick : k_judged});
+    }));
   }
-  const MethodFigures figures = record.figures();
+  const MethodFigures figures = samples.figures("glint");
   const ExperimentBars bars = bars_of(kind);
   const double covered = 100 * figures.covered.value_or(0);
   const bool still = kind == ExperimentKind::still;

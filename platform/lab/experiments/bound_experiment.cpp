@@ -185,7 +185,8 @@ CaseList run_bound(const CaseOptions& options) {
   const int samples = options.quick ? k_samples_quick : k_samples;
   CaseList list{"bound", {}, {}};
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    const Methods methods = run_case(cases[k], k, camera, samples, options.seed);
+    const Methods methods =
+        options.piece([&] { return run_case(cases[k], k, camera, samples, options.seed); });
     for (const BoundErrors* errors : {&methods.glint, &methods.svd, &methods.baseline})
       list.cases.push_back(case_of(cases[k], *errors, cases[k].tilt.judged && !options.quick));
     if (options.progress) options.progress(static_cast<int>(k) + 1, static_cast<int>(cases.size()));

@@ -20,6 +20,15 @@
 #include "platform/lab/experiments/warnings_experiment.hpp"
 
 namespace glint {
+namespace {
+
+// An experiment without repetitions: a single piece of work.
+template <CaseList (*Run)(const CaseOptions&)>
+CaseList in_one_piece(const CaseOptions& options) {
+  return options.piece([&] { return Run(options); });
+}
+
+}  // namespace
 
 std::span<const CaseExperiment> case_experiments() {
   using enum DataFolder;
@@ -27,9 +36,9 @@ std::span<const CaseExperiment> case_experiments() {
       {"centroid", "rendered spheres: centroid error, and its stated standard deviation", none,
        run_centroid_experiment},
       {"cis_pivot", "pivot posts and two-body tips of a course, against its answers", required,
-       run_cis_pivot},
+       in_one_piece<run_cis_pivot>},
       {"marker_mocap", "a real probe's markers from unlabelled points, and its tip on a landmark",
-       required, run_marker_mocap},
+       required, in_one_piece<run_marker_mocap>},
       {"f2554", "a tip on one point, rotated about each axis, and distances between points", none,
        run_f2554},
       {"rest", "the pose of a tool after it comes to rest", none, run_static_tool},
@@ -50,7 +59,8 @@ std::span<const CaseExperiment> case_experiments() {
        required, run_correlated},
       {"bound", "the pose of one frame, against the lower bound of any estimator", none, run_bound},
       {"noise", "detections and false detections of a tool against range noise", none, run_noise},
-      {"map", "a map of depth images against a second one of the same place", required, run_map},
+      {"map", "a map of depth images against a second one of the same place", required,
+       in_one_piece<run_map>},
       {"clutter", "five tools among up to 200 strays, and two tools that look alike", none,
        run_clutter},
       {"acquire", "acquisition time among more bright spots than [budget] blobs", optional,

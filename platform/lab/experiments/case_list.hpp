@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "platform/shards/sharded_work.hpp"
+
 namespace glint {
 
 // Acceptance limit of a figure. Figures of a baseline have none.
@@ -37,20 +39,25 @@ struct ExperimentCase {
   std::vector<Figure> figures;
 };
 
+struct PlotFile {
+  std::string path, svg;
+};
+
 struct CaseList {
   std::string experiment;
   std::vector<ExperimentCase> cases;
-  std::vector<std::string> plots;  // files written
+  std::vector<PlotFile> plots;
 };
 
 struct CaseOptions {
   bool quick = false;       // smoke test of a few seconds; without the bars that need more samples
   std::uint64_t seed = 1;   // random seed
-  std::string out = "out";  // existing folder for the plots
+  std::string out = "out";  // existing folder for plots and finished tries
   std::string data;         // folder of recordings; empty if not given
   // Called from time to time with the samples done and in total; may be empty.
   std::function<void(int done, int total)> progress;
   int tries = 0;  // for experiments with --tries; 0: their other cases
+  Pieces piece;   // runs each repetition
 };
 
 // Returns the number of figures that miss their bar.

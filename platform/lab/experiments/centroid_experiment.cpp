@@ -6,7 +6,6 @@
 #include "platform/lab/experiments/centroid_cases.hpp"
 #include "platform/lab/experiments/centroid_methods.hpp"
 #include "platform/tools/report/plots.hpp"
-#include "platform/tools/report/svg.hpp"
 
 namespace glint {
 namespace {
@@ -18,22 +17,19 @@ constexpr double k_corrected_px = 0.02;  // limit of the bias after sphere corre
 constexpr double k_flagged_min = 0.95;
 
 // Error statistics of one method on one case.
-class Errors {
- public:
-  void add(const Vector2& error) {
-    sum_ += error;
-    squares_ += error.squaredNorm();
-    ++count_;
-  }
-  [[nodiscard]] std::int64_t count() const { return count_; }
-  [[nodiscard]] double rms() const { return std::sqrt(squares_ / (2 * per())); }  // per axis
-  [[nodiscard]] double bias() const { return (sum_ / per()).norm(); }
+struct Errors {
+  Vector2 sum = Vector2::Zero();
+  double squares = 0;
+  std::int64_t n = 0;
 
- private:
-  [[nodiscard]] double per() const { return count_ > 0 ? static_cast<double>(count_) : 1; }
-  Vector2 sum_ = Vector2::Zero();
-  double squares_ = 0;
-  std::int64_t count_ = 0;
+  void add(const Vector2& error) {
+    sum += error;
+    squares += error.squaredNorm();
+    ++n;
+  }
+  [[nodiscard]] double rms() const { return std::sqrt(squares / (2 * per())); }  // per axis
+  [[nodiscard]] double bias() const { return (sum / per()).norm(); }
+  [[nodiscard]] double per() const { return n > 0 ? static_cast<double>(n) : 1; }
 };
 
 struct Outcome {
@@ -87,8 +83,7 @@ double share(std::int64_t part, std::int64_t of) {
 
 ExperimentCase glint_case(const CentroidCase& one, const Outcome& outcome, int spheres) {
   const double rms = outcome.raw.rms();
-  const double sigma =
-      std::sqrt(outcome.variance_sum / (2.0 * static_cast<double>(outcome.raw.count())));
+  const double sigma = std::sqrt(outcome.variance_sum / (2.0 * static_cast<double>(outcome.raw.n)));
   ExperimentCase out{one.name, "glint", spheres, {}};
   const Bar bar = one.rms_max_px > 0 ? Bar::at_most(one.rms_max_px) : Bar::none();
   out.figures.push_back({"rms", "px", rms, bar});
@@ -98,9 +93,9 @@ ExperimentCase glint_case(const CentroidCase& one, const Outcome& outcome, int s
     out.figures.push_back({"sigma_over_rms", "", sigma / rms, Bar::at_most(1 / k_ratio_min)});
   } else {
     out.figures.push_back(
-        {"flagged", "", share(outcome.flagged, outcome.raw.count()), Bar::at_least(k_flagged_min)});
+        {"flagged", "", share(outcome.flagged, outcome.raw.n), Bar::at_least(k_flagged_min)});
   }
-  out.figures.push_back({"found", "", share(outcome.raw.count(), spheres)});
+  out.figures.push_back({"found", "", share(outcome.raw.n, spheres)});
   return out;
 }
 
@@ -120,15 +115,15 @@ ExperimentCase range_case(const CentroidCase& one, const Outcome& outcome) {
 ExperimentCase other_case(const CentroidCase& one, const char* method, const Errors& errors,
                           int spheres) {
   ExperimentCase out{one.name, method, spheres, {}};
-  if (errors.count() > 0) out.figures.push_back({"rms", "px", errors.rms()});
-  out.figures.push_back({"found", "", share(errors.count(), spheres)});
+  if (errors.n > 0) out.figures.push_back({"rms", "px", errors.rms()});
+  out.figures.push_back({"found", "", share(errors.n, spheres)});
   return out;
 }
 
 ExperimentCase off_axis_case(const CentroidCase& one, const Outcome& outcome) {
   return {one.name,
           "glint",
-          outcome.corrected.count(),
+          outcome.corrected.n,
           {{"bias_before", "px", outcome.raw.bias()},
            {"bias", "px", outcome.corrected.bias(), Bar::at_most(k_corrected_px)},
            {"rms", "px", outcome.corrected.rms(), Bar::at_most(0.03)}}};
@@ -144,21 +139,20 @@ class Plots {
     add(kind, "binary", one, outcome.binary);
     add(kind, "baseline", one, outcome.baseline);
   }
-  [[nodiscard]] std::vector<std::string> write(const std::string& folder) const {
-    std::vector<std::string> written;
+  [[nodiscard]] std::vector<PlotFile> files_in(const std::string& folder) const {
+    std::vector<PlotFile> files;
     for (const auto& [kind, lines] : kinds_) {
-      written.push_back(folder + "/centroid_" + std::to_string(written.size() + 1) + ".svg");
-      write_text_file(
-          written.back(),
-          line_plot({"Centroids: " + kind, "diameter [px]", "rms an axis [px]"}, lines));
+      files.push_back(
+          {folder + "/centroid_" + std::to_string(files.size() + 1) + ".svg",
+           line_plot({"Centroids: " + kind, "diameter [px]", "rms an axis [px]"}, lines)});
     }
-    return written;
+    return files;
   }
 
  private:
   void add(const std::string& kind, const std::string& method, const CentroidCase& one,
            const Errors& errors) {
-    if (errors.count() == 0) return;
+    if (errors.n == 0) return;
     std::vector<LineSeries>& lines = kinds_[kind];
     for (LineSeries& line : lines) {
       if (line.name != method) continue;
@@ -178,7 +172,7 @@ CaseList run_centroid_experiment(const CaseOptions& options) {
   const int total = spheres * static_cast<int>(sized.size() + disturbed.size() + off_axis.size());
   int done = 0;
   const auto measured = [&](const CentroidCase& one) {
-    const Outcome outcome = measure(one, spheres, options.seed);
+    const Outcome outcome = options.piece([&] { return measure(one, spheres, options.seed); });
     done += spheres;
     if (options.progress) options.progress(done, total);
     return outcome;
@@ -198,7 +192,7 @@ CaseList run_centroid_experiment(const CaseOptions& options) {
     list.cases.push_back(glint_case(one, measured(one), spheres));
   }
   for (const CentroidCase& one : off_axis) list.cases.push_back(off_axis_case(one, measured(one)));
-  list.plots = plots.write(options.out);
+  list.plots = plots.files_in(options.out);
   return list;
 }
 

@@ -107,7 +107,8 @@ class BaselineTrackers {
   std::vector<BaselineTracker> trackers_;
 };
 
-void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) {
+// Glint's case and the baseline's.
+std::vector<ExperimentCase> run_case(const ClutterCase& c, bool quick) {
   const Cell cell = cell_of(c);
   const auto tracker = std::make_unique<Tracker>();
   configure(cell, *tracker);
@@ -117,7 +118,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   ClutterTally glint(c.tools), fits(c.tools), published(c.tools);
   SearchTally search;
   sim::SimFrame frame;
-  const int baseline_frames = options.quick ? k_baseline_frames_quick : k_baseline_frames;
+  const int baseline_frames = quick ? k_baseline_frames_quick : k_baseline_frames;
   for (int i = 0; i < simulator.frame_count(); ++i) {
     simulator.render(i, frame);
     tracker->input<Frame>() = frame.view();
@@ -135,8 +136,8 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   figures.push_back({"blobs_most", "", static_cast<double>(search.blobs_most)});
   figures.push_back({"named_most", "", static_cast<double>(search.steps_most)});
   figures.push_back({"searches_full", "", static_cast<double>(search.exhausted)});
-  list.cases.push_back({c.name, "glint", glint.trackable(), std::move(figures)});
-  list.cases.push_back({c.name, "baseline", published.trackable(), published.figures({}, {})});
+  return {{c.name, "glint", glint.trackable(), std::move(figures)},
+          {c.name, "baseline", published.trackable(), published.figures({}, {})}};
 }
 
 // `refused` is 1 if the cell reader refuses the two tools.
@@ -177,7 +178,8 @@ CaseList run_clutter(const CaseOptions& options) {
   CaseList list{"clutter", {}, {}};
   const std::vector<ClutterCase> cases = cases_of(options);
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    run_case(cases[k], options, list);
+    for (ExperimentCase& one : options.piece([&] { return run_case(cases[k], options.quick); }))
+      list.cases.push_back(std::move(one));
     if (options.progress) options.progress(static_cast<int>(k) + 1, static_cast<int>(cases.size()));
   }
   const ToolSet five = five_tools(options.seed);

@@ -26,6 +26,11 @@ struct Consistency {
     ++n;
     if (squared <= k_inside_95) ++inside;
   }
+  void add(const Consistency& other) {
+    sum += other.sum;
+    n += other.n;
+    inside += other.inside;
+  }
   [[nodiscard]] double nees_per_axis() const { return sum / (6.0 * n); }
   [[nodiscard]] double inside_95_percent() const { return 100.0 * inside / n; }
 };

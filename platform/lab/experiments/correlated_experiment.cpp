@@ -64,6 +64,14 @@ struct StaticErrors {
     square_m2 += error.head<3>().squaredNorm();
     stated_m2 += position.trace();
   }
+  void add(const StaticErrors& other) {
+    n += other.n;
+    inside_position += other.inside_position;
+    inside_rotation += other.inside_rotation;
+    nees += other.nees;
+    square_m2 += other.square_m2;
+    stated_m2 += other.stated_m2;
+  }
   [[nodiscard]] double percent(std::int64_t part) const {
     return 100 * static_cast<double>(part) / static_cast<double>(n);
   }
@@ -76,8 +84,9 @@ std::unique_ptr<ToolMotion> filter_for(const StaticModel& model) {
 }
 
 // Runs the filter on a static pose with errors and covariance of the model.
-void generated_run(const StaticModel& model, double period_s, std::uint64_t seed, std::uint64_t run,
-                   StaticErrors& judged) {
+StaticErrors generated_run(const StaticModel& model, double period_s, std::uint64_t seed,
+                           std::uint64_t run) {
+  StaticErrors judged;
   const auto motion = filter_for(model);
   const sim::RandomKey key{seed, sim::Stream::reference, run};
   const Pose truth{Quaternion::Identity(), {0.1, 0.05, 0.5}};
@@ -105,6 +114,7 @@ void generated_run(const StaticModel& model, double period_s, std::uint64_t seed
     if (motion->update({time, seen, model.white}, model.correlated) != Reason::none) continue;
     if (frame * period_s > k_warm_up_s) judged.add(*motion, truth);
   }
+  return judged;
 }
 
 // Mean pose of the series, from small deviations from its first pose.
@@ -185,7 +195,9 @@ CaseList run_correlated(const CaseOptions& options) {
   for (const double period_s : {0.2, 1.0 / 45}) {
     StaticErrors judged;
     for (int run = 0; run < runs; ++run) {
-      generated_run(model, period_s, options.seed, static_cast<std::uint64_t>(run), judged);
+      judged.add(options.piece([&] {
+        return generated_run(model, period_s, options.seed, static_cast<std::uint64_t>(run));
+      }));
       if (options.progress) options.progress(++done, 2 * runs);
     }
     char name[64];

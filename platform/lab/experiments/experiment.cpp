@@ -37,6 +37,58 @@ ExperimentRun make_run(sim::Scenario scenario, int judged, const ExperimentOptio
   return run;
 }
 
+// What all methods did in one run.
+struct RunSamples {
+  MethodSamples baseline, glint, referenced, perfect;
+  std::vector<Vector3> reference_m;  // path of the reference
+};
+
+RunSamples run_samples(const ExperimentRun& run, const Tool& tool,
+                       const sim::ReferenceSettings& judge,
+                       const std::function<void()>& frame_done) {
+  const sim::Simulator simulator(run.scenario), reference_simulator(with_reference(run.scenario));
+  BaselineTracker baseline_tracker(run.scenario.camera, tool);
+  const HeadNoise noise;  // as shipped: the simulated headset differs
+  GlintChain free_chain(run.scenario.camera, ChainSetup{{tool}, -1, noise});
+  GlintChain referenced_chain(run.scenario.camera, ChainSetup{{tool, reference_body()}, 1, noise});
+  MethodRecord baseline(tool, judge), glint(tool, judge), referenced(tool, judge),
+      perfect(tool, judge);
+  std::vector<Vector3> reference_m;
+  sim::SimFrame frame, with_reference_body;
+  const int end = std::min(run.skipped + run.aligning + run.judged, simulator.frame_count());
+  for (int i = run.skipped; i < end; ++i) {
+    simulator.render(i, frame);
+    reference_simulator.render(i, with_reference_body);
+    const auto baseline_answer = timed([&]() -> Result<UncertainPose> {
+      const BaselineResult answer = baseline_tracker.process(frame.view(), frame.head);
+      const Pose T_tool_tip{Quaternion::Identity(), tool.tip_m};
+      return {{{}, frame.head.T_world_camera * answer.T_camera_tool * T_tool_tip, Matrix6::Zero()},
+              answer.reason};
+    });
+    const auto followed = [](GlintChain& chain, const sim::SimFrame& seen) {
+      return timed([&] {
+        (void)chain.process(seen.view(), seen.head);
+        return chain.followed();
+      });
+    };
+    const auto glint_answer = followed(free_chain, frame);
+    const auto referenced_answer = followed(referenced_chain, with_reference_body);
+    const bool aligning = i < run.skipped + run.aligning;
+    const auto take = aligning ? &MethodRecord::take_aligning : &MethodRecord::add_evaluated;
+    (baseline.*take)(frame, baseline_answer.first, baseline_answer.second);
+    (glint.*take)(frame, glint_answer.first, glint_answer.second);
+    (referenced.*take)(with_reference_body, referenced_answer.first, referenced_answer.second);
+    const Pose T_camera_tip = frame.truth.T_world_camera.inverse() *
+                              frame.truth.T_world_tool.front() *
+                              Pose{Quaternion::Identity(), tool.tip_m};
+    (perfect.*take)(frame, {{{}, frame.head.T_world_camera * T_camera_tip, Matrix6::Zero()}}, 0);
+    if (!aligning) reference_m.push_back(frame.reference.front() * tool.tip_m);
+    frame_done();
+  }
+  return {baseline.samples(), glint.samples(), referenced.samples(), perfect.samples(),
+          reference_m};
+}
+
 }  // namespace
 
 sim::Scenario with_reference(sim::Scenario scenario) {
@@ -103,61 +155,24 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
 
   const Tool tool = runs.front().scenario.tools.front().tool;
   const sim::ReferenceSettings& judge = runs.front().scenario.reference;
-  MethodRecord baseline("baseline", tool, judge), glint("glint", tool, judge),
-      referenced("glint with a reference body", tool, judge),
-      perfect("a perfect tracker", tool, judge);
-  sim::SimFrame frame, with_reference_body;
+  const auto frame_done = [&] {
+    if (options.progress && (++done % k_progress_every == 0 || done == total))
+      options.progress(done, total);
+  };
+  RunSamples all;
   for (const ExperimentRun& run : runs) {
-    const sim::Simulator simulator(run.scenario), reference_simulator(with_reference(run.scenario));
-    BaselineTracker baseline_tracker(run.scenario.camera, tool);
-    const HeadNoise noise;  // as shipped: the simulated headset differs
-    GlintChain free_chain(run.scenario.camera, ChainSetup{{tool}, -1, noise});
-    GlintChain referenced_chain(run.scenario.camera,
-                                ChainSetup{{tool, reference_body()}, 1, noise});
-    baseline.begin_run();
-    glint.begin_run();
-    referenced.begin_run();
-    perfect.begin_run();
-    result.path.reference_m.clear();
-    const int end = std::min(run.skipped + run.aligning + run.judged, simulator.frame_count());
-    for (int i = run.skipped; i < end; ++i) {
-      simulator.render(i, frame);
-      reference_simulator.render(i, with_reference_body);
-      const auto baseline_answer = timed([&]() -> Result<UncertainPose> {
-        const BaselineResult answer = baseline_tracker.process(frame.view(), frame.head);
-        const Pose T_tool_tip{Quaternion::Identity(), tool.tip_m};
-        return {
-            {{}, frame.head.T_world_camera * answer.T_camera_tool * T_tool_tip, Matrix6::Zero()},
-            answer.reason};
-      });
-      const auto followed = [](GlintChain& chain, const sim::SimFrame& seen) {
-        return timed([&] {
-          (void)chain.process(seen.view(), seen.head);
-          return chain.followed();
-        });
-      };
-      const auto glint_answer = followed(free_chain, frame);
-      const auto referenced_answer = followed(referenced_chain, with_reference_body);
-      const bool aligning = i < run.skipped + run.aligning;
-      const auto take = aligning ? &MethodRecord::take_aligning : &MethodRecord::add_evaluated;
-      (baseline.*take)(frame, baseline_answer.first, baseline_answer.second);
-      (glint.*take)(frame, glint_answer.first, glint_answer.second);
-      (referenced.*take)(with_reference_body, referenced_answer.first, referenced_answer.second);
-      const Pose T_camera_tip = frame.truth.T_world_camera.inverse() *
-                                frame.truth.T_world_tool.front() *
-                                Pose{Quaternion::Identity(), tool.tip_m};
-      (perfect.*take)(frame, {{{}, frame.head.T_world_camera * T_camera_tip, Matrix6::Zero()}}, 0);
-      if (!aligning) result.path.reference_m.push_back(frame.reference.front() * tool.tip_m);
-      if (options.progress && (++done % k_progress_every == 0 || done == total))
-        options.progress(done, total);
-    }
+    const RunSamples one = options.piece([&] { return run_samples(run, tool, judge, frame_done); });
+    all.baseline.add_run(one.baseline);
+    all.glint.add_run(one.glint);
+    all.referenced.add_run(one.referenced);
+    all.perfect.add_run(one.perfect);
+    all.reference_m = one.reference_m;
   }
-  result.baseline = baseline.figures();
-  result.glint = glint.figures();
-  result.glint_held = referenced.figures();
-  result.perfect = perfect.figures();
-  result.path.baseline_m = baseline.path_m();
-  result.path.glint_m = glint.path_m();
+  result.baseline = all.baseline.figures("baseline");
+  result.glint = all.glint.figures("glint");
+  result.glint_held = all.referenced.figures("glint with a reference body");
+  result.perfect = all.perfect.figures("a perfect tracker");
+  result.path = {all.reference_m, all.baseline.path_m, all.glint.path_m};
   return result;
 }
 

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "platform/lab/experiments/alignment.hpp"
+#include "platform/shards/sharded_work.hpp"
 #include "platform/sim/scenario.hpp"
 #include "platform/tools/report/statistics.hpp"
 
@@ -39,6 +40,7 @@ struct ExperimentOptions {
   std::uint64_t seed = 1;  // random seed of the simulator
   // Called from time to time with the frames done and in total; may be empty.
   std::function<void(int done, int total)> progress;
+  Pieces piece;  // runs each run of the protocol
 };
 
 // Error statistics of position (mm) or angle (deg).

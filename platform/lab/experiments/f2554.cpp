@@ -141,7 +141,9 @@ CaseList run_f2554(const CaseOptions& options) {
   const auto step = [&] {
     if (options.progress) options.progress(++done, 5 * count);
   };
-  const auto run = [&](const std::vector<Pose>& poses) { return measured(poses, options, step); };
+  const auto run = [&](const std::vector<Pose>& poses) {
+    return options.piece([&] { return measured(poses, options, step); });
+  };
 
   CaseList list{"f2554", {}, {}};
   std::vector<HistogramSeries> plots(4);
@@ -170,10 +172,9 @@ CaseList run_f2554(const CaseOptions& options) {
   }
   list.cases.push_back(distance_case(poses.size(), run(poses)));
 
-  list.plots.push_back(options.out + "/f2554.svg");
-  write_text_file(
-      list.plots.back(),
-      histogram_plot({"Tip on one point", "distance from the mean [mm]", "part a mm"}, plots));
+  list.plots.push_back(
+      {options.out + "/f2554.svg",
+       histogram_plot({"Tip on one point", "distance from the mean [mm]", "part a mm"}, plots)});
   return list;
 }
 

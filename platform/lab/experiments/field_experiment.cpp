@@ -238,14 +238,14 @@ CaseList run_field(const CaseOptions& options) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
     const sim::BackgroundFrame& background = seed % k_real_background == 0 ? real : room;
     for (std::size_t d = 0; d < devices.size(); ++d) {
-      const FieldRun* run = calibrated ? finished.find(devices[d], seed, duration_s) : nullptr;
-      FieldRun fresh;
-      if (run == nullptr) {
-        fresh = run_of(devices[d], seed, duration_s,
-                       run_field_device(devices[d], seed, duration_s, options.out, background));
-        run = calibrated ? &finished.add(fresh) : &fresh;
-      }
-      tallies[d].add(*run);
+      tallies[d].add(options.piece([&] {
+        const FieldRun* run = calibrated ? finished.find(devices[d], seed, duration_s) : nullptr;
+        if (run != nullptr) return *run;
+        const FieldRun fresh =
+            run_of(devices[d], seed, duration_s,
+                   run_field_device(devices[d], seed, duration_s, options.out, background));
+        return calibrated ? finished.add(fresh) : fresh;
+      }));
       if (options.progress) options.progress(++done, static_cast<int>(devices.size()) * seeds);
     }
   }

@@ -77,11 +77,14 @@ ExperimentCase start_case(const CaseOptions& options, const std::string& name, d
                           double after_s, std::array<double, 2> limits) {
   const int runs = options.quick ? k_lag_quick_runs : k_lag_runs;
   const std::vector<Vector3> model = tool_8700339();
-  LagErrors errors;
-  for (int run = 0; run < runs; ++run) {
-    one_start(model, {noise_share, options.seed, static_cast<std::uint64_t>(run)}, errors);
-    if (options.progress) options.progress(run + 1, runs);
-  }
+  const LagErrors errors = options.piece([&] {
+    LagErrors sums;
+    for (int run = 0; run < runs; ++run) {
+      one_start(model, {noise_share, options.seed, static_cast<std::uint64_t>(run)}, sums);
+      if (options.progress) options.progress(run + 1, runs);
+    }
+    return sums;
+  });
   const Worst worst = worst_after(errors, after_s, runs);
   const auto bar = [&](double limit) {
     return options.quick && noise_share > 0 ? Bar::none() : Bar::at_most(limit);

@@ -217,9 +217,9 @@ CaseList run_marker_mocap(const CaseOptions& options) {
         scatter_case(name, "published geometry", given, trials[i].size(), Judged::no));
     plot.push_back(series_of(name, found.distances_mm));
   }
-  list.plots.push_back(options.out + "/marker_mocap_tip.svg");
-  write_text_file(list.plots.back(),
-                  line_plot({"Tip on a landmark, from its mean", "frame", "distance [mm]"}, plot));
+  list.plots.push_back(
+      {options.out + "/marker_mocap_tip.svg",
+       line_plot({"Tip on a landmark, from its mean", "frame", "distance [mm]"}, plot)});
   return list;
 }
 

@@ -13,18 +13,40 @@ constexpr double k_mm = 1000;
 
 }  // namespace
 
-MethodRecord::MethodRecord(std::string name, const Tool& tool,
-                           const sim::ReferenceSettings& reference)
-    : name_(std::move(name)), T_tool_tip_{Quaternion::Identity(), tool.tip_m} {
+void MethodSamples::add_run(const MethodSamples& run) {
+  const auto append = [](auto& all, const auto& some) {
+    all.insert(all.end(), some.begin(), some.end());
+  };
+  append(position_mm, run.position_mm);
+  append(position_norm_mm, run.position_norm_mm);
+  append(angle_deg, run.angle_deg);
+  append(angle_norm_deg, run.angle_norm_deg);
+  path_m = run.path_m;
+  seconds += run.seconds;
+  timed += run.timed;
+  frames += run.frames;
+  samples += run.samples;
+  stated += run.stated;
+  covered += run.covered;
+}
+
+MethodFigures MethodSamples::figures(const std::string& method) const {
+  MethodFigures figures;
+  figures.name = method;
+  figures.position_mm = make_error_column(position_mm, position_norm_mm);
+  figures.angle_deg = make_error_column(angle_deg, angle_norm_deg);
+  figures.frames_per_s = seconds > 0 ? timed / seconds : 0;
+  if (stated > 0) figures.covered = static_cast<double>(covered) / stated;
+  figures.samples = samples;
+  figures.frames = frames;
+  return figures;
+}
+
+MethodRecord::MethodRecord(const Tool& tool, const sim::ReferenceSettings& reference)
+    : T_tool_tip_{Quaternion::Identity(), tool.tip_m} {
   const double by_angle = reference.angle_sigma_rad * tool.tip_m.norm();
   reference_variance_m2_ =
       reference.position_sigma_m * reference.position_sigma_m + by_angle * by_angle;
-}
-
-void MethodRecord::begin_run() {
-  aligning_.clear();
-  path_m_.clear();
-  aligned_ = false;
 }
 
 PosePair MethodRecord::pair_of(const sim::SimFrame& frame, const Pose& T_world_tip) const {
@@ -32,8 +54,8 @@ PosePair MethodRecord::pair_of(const sim::SimFrame& frame, const Pose& T_world_t
 }
 
 void MethodRecord::take_time(double seconds) {
-  seconds_ += seconds;
-  ++timed_;
+  samples_.seconds += seconds;
+  ++samples_.timed;
 }
 
 void MethodRecord::take_aligning(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
@@ -45,16 +67,16 @@ void MethodRecord::take_aligning(const sim::SimFrame& frame, const Result<Uncert
 void MethodRecord::add_evaluated(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
                                  double seconds) {
   take_time(seconds);
-  ++frames_;
+  ++samples_.frames;
   if (!answer || !frame.head.valid) {
-    path_m_.emplace_back(Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    samples_.path_m.emplace_back(Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
     return;
   }
   if (!aligned_) {
     T_reference_world_ = align_worlds(aligning_);
     aligned_ = true;
   }
-  ++samples_;
+  ++samples_.samples;
   const PosePair pair = pair_of(frame, answer.value.pose);
   const PoseError error = pose_error(T_reference_world_, pair);
   if (answer.value.covariance.trace() > 0) {
@@ -62,28 +84,17 @@ void MethodRecord::add_evaluated(const sim::SimFrame& frame, const Result<Uncert
     const Matrix3 covariance =
         turn * answer.value.covariance.topLeftCorner<3, 3>() * turn.transpose() +
         reference_variance_m2_ * Matrix3::Identity();
-    ++stated_;
-    covered_ += error.position_m.dot(covariance.inverse() * error.position_m) <= k_inside ? 1 : 0;
+    ++samples_.stated;
+    samples_.covered +=
+        error.position_m.dot(covariance.inverse() * error.position_m) <= k_inside ? 1 : 0;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    position_mm_.push_back(error.position_m[axis] * k_mm);
-    angle_deg_.push_back(error.rotation_rad[axis] * k_degrees_per_radian);
+    samples_.position_mm.push_back(error.position_m[axis] * k_mm);
+    samples_.angle_deg.push_back(error.rotation_rad[axis] * k_degrees_per_radian);
   }
-  position_norm_mm_.push_back(error.position_m.norm() * k_mm);
-  angle_norm_deg_.push_back(error.rotation_rad.norm() * k_degrees_per_radian);
-  path_m_.push_back((T_reference_world_ * pair.T_world_tip).translation);
-}
-
-MethodFigures MethodRecord::figures() const {
-  MethodFigures figures;
-  figures.name = name_;
-  figures.position_mm = make_error_column(position_mm_, position_norm_mm_);
-  figures.angle_deg = make_error_column(angle_deg_, angle_norm_deg_);
-  figures.frames_per_s = seconds_ > 0 ? timed_ / seconds_ : 0;
-  if (stated_ > 0) figures.covered = static_cast<double>(covered_) / stated_;
-  figures.samples = samples_;
-  figures.frames = frames_;
-  return figures;
+  samples_.position_norm_mm.push_back(error.position_m.norm() * k_mm);
+  samples_.angle_norm_deg.push_back(error.rotation_rad.norm() * k_degrees_per_radian);
+  samples_.path_m.push_back((T_reference_world_ * pair.T_world_tip).translation);
 }
 
 }  // namespace glint

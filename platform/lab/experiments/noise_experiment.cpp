@@ -18,6 +18,7 @@ namespace {
 constexpr int k_noise_frames = 100'000;
 constexpr int k_noise_frames_quick = 200;
 constexpr int k_restarted_frames = 10'000;
+constexpr int k_frames_per_piece = 10'000;
 constexpr double k_pixel_sigma_px = 0.1;
 constexpr std::array k_noises_m = {0.0, 0.001, 0.002, 0.003, 0.005};
 
@@ -43,6 +44,15 @@ struct NoiseTally {
   std::int64_t frames = 0, found = 0, wrong = 0, gross = 0;
   std::int64_t hypotheses = 0, hypotheses_most = 0, full = 0;
 
+  void add(const NoiseTally& other) {
+    frames += other.frames;
+    found += other.found;
+    wrong += other.wrong;
+    gross += other.gross;
+    hypotheses += other.hypotheses;
+    hypotheses_most = std::max(hypotheses_most, other.hypotheses_most);
+    full += other.full;
+  }
   void add(const NoiseCase& c, const PointView& view, const Pose& truth, const Labeling& labeling,
            const Pose& pose, double tip_sigma_m) {
     ++found;
@@ -161,8 +171,10 @@ void add_graph_rows(const PointTool& ndi, const CaseOptions& options, CaseList& 
                  Bar::none()},
         GraphRow{"a new tracker a frame", GraphStart::each_frame, false, k_restarted_frames, {}}}) {
     const int frames = options.quick ? std::min(k_noise_frames_quick, row.frames) : row.frames;
-    const GraphNoiseTally tally = run_noise_graph(
-        {ndi, {k_pixel_sigma_px, 0.005}, 20, row.start, row.oracle}, frames, options.seed);
+    const GraphNoiseTally tally = options.piece([&] {
+      return run_noise_graph({ndi, {k_pixel_sigma_px, 0.005}, 20, row.start, row.oracle}, frames,
+                             options.seed);
+    });
     const double fresh =
         100 * static_cast<double>(tally.fresh) / static_cast<double>(tally.trackable);
     if (row.oracle) oracle_fresh = fresh;
@@ -194,10 +206,18 @@ CaseList run_noise(const CaseOptions& options) {
   CaseList list{"noise", {}, {}};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     Tallies tallies;
-    for (int f = 0; f < frames; ++f) {
-      SampleNumbers numbers(options.seed, 1000 + k, static_cast<std::uint64_t>(f));
-      draw_frame({cases[k].tool, noise_of(cases[k]), cases[k].strays}, camera, numbers, *frame);
-      try_frame(cases[k], *frame, settings, *scratch, tallies);
+    for (int first = 0; first < frames; first += k_frames_per_piece) {
+      const Tallies piece = options.piece([&] {
+        Tallies some;
+        for (int f = first; f < std::min(first + k_frames_per_piece, frames); ++f) {
+          SampleNumbers numbers(options.seed, 1000 + k, static_cast<std::uint64_t>(f));
+          draw_frame({cases[k].tool, noise_of(cases[k]), cases[k].strays}, camera, numbers, *frame);
+          try_frame(cases[k], *frame, settings, *scratch, some);
+        }
+        return some;
+      });
+      tallies.glint.add(piece.glint);
+      tallies.svd.add(piece.svd);
     }
     list.cases.push_back(case_of(cases[k], "glint", tallies.glint, !options.quick));
     list.cases.push_back(case_of(cases[k], "svd", tallies.svd, false));

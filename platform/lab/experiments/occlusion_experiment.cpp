@@ -42,9 +42,16 @@ MeasuredPoint seen_marker(const Vector3& model, const Pose& truth, const Vector3
 struct Figures {
   Consistency hidden;
   int returns = 0, innovation_outliers = 0;
+
+  void add(const Figures& other) {
+    hidden.add(other.hidden);
+    returns += other.returns;
+    innovation_outliers += other.innovation_outliers;
+  }
 };
 
-void follow(const NoisyRecording& recording, std::uint64_t seed, Figures& figures) {
+Figures follow(const NoisyRecording& recording, std::uint64_t seed) {
+  Figures figures;
   const std::vector<Vector3> model = tool_8700339();
   ToolMotion motion;
   motion.settings = EstimatorSettings{}.motion;
@@ -74,6 +81,7 @@ void follow(const NoisyRecording& recording, std::uint64_t seed, Figures& figure
     figures.hidden.add(pose_of(motion.estimate()), truth);
     was_hidden = true;
   }
+  return figures;
 }
 
 }  // namespace
@@ -86,7 +94,8 @@ CaseList run_occlusion(const CaseOptions& options) {
     const int draws = options.quick ? 1 : 10;
     for (int draw = 0; draw < draws; ++draw) {
       const std::uint64_t seed = options.seed * 1000 + static_cast<std::uint64_t>(draw);
-      follow(noisy(truths[i], PredictionSettings{}, seed), seed, figures);
+      figures.add(options.piece(
+          [&] { return follow(noisy(truths[i], PredictionSettings{}, seed), seed); }));
     }
     const auto bar = [&](Bar limit) { return options.quick ? Bar::none() : limit; };
     const double nees = figures.hidden.nees_per_axis();

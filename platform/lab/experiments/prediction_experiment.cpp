@@ -37,7 +37,7 @@ const std::vector<NamedPredictor>& rivals() {
   return k_rivals;
 }
 
-using HorizonErrors = std::vector<PredictionError>;  // one per horizon
+using HorizonErrors = std::array<PredictionError, k_ahead.size()>;  // one per horizon
 
 ExperimentCase case_of(const char* recording, std::size_t h, const std::string& method,
                        const HorizonErrors& errors) {
@@ -74,11 +74,18 @@ CaseList run_prediction(const CaseOptions& options) {
   const std::vector<Trajectory> truths = load_recordings(options);
   for (std::size_t i = 0; i < truths.size(); ++i) {
     const NoisyRecording measured = noisy(truths[i], settings, options.seed);
+    const auto errors_of = [&](Predictor& predictor) {
+      return options.piece([&] {
+        const auto found = prediction_errors(measured, predictor, k_horizons, settings);
+        HorizonErrors errors;
+        std::copy(found.begin(), found.end(), errors.begin());
+        return errors;
+      });
+    };
     GlintPredictor glint(EstimatorSettings{}.motion);
-    const HorizonErrors own = prediction_errors(measured, glint, k_horizons, settings);
+    const HorizonErrors own = errors_of(glint);
     std::vector<HorizonErrors> others;
-    for (const NamedPredictor& rival : rivals())
-      others.push_back(prediction_errors(measured, *rival.make(), k_horizons, settings));
+    for (const NamedPredictor& rival : rivals()) others.push_back(errors_of(*rival.make()));
     for (std::size_t h = 0; h < k_horizons.size(); ++h) {
       list.cases.push_back(case_of(k_recordings[i].name, h, "glint", own));
       add_ratios(list.cases.back(), k_error_ratios[i], own[h], others, h, !options.quick);

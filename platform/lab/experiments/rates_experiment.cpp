@@ -60,7 +60,9 @@ CaseList run_rates(const CaseOptions& options) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     RatesTally tally;
     for (int run = 0; run < runs; ++run)
-      follow_rates({all[k].faults, options.seed, static_cast<std::uint64_t>(run)}, tally);
+      tally.add(options.piece([&] {
+        return follow_rates({all[k].faults, options.seed, static_cast<std::uint64_t>(run)});
+      }));
     for (const Rate rate : {Rate::fast, Rate::slow}) {
       const auto r = static_cast<std::size_t>(rate);
       const std::string name = std::string(rate == Rate::fast ? "45 Hz, " : "5 Hz, ") + all[k].name;

@@ -190,7 +190,26 @@ class GraphChain {
 
 }  // namespace
 
-void follow_rates(const RatesRun& run, RatesTally& tally) {
+void GraphTally::add(const GraphTally& other) {
+  ticks += other.ticks;
+  states_correct += other.states_correct;
+  age_error_max_ns = std::max(age_error_max_ns, other.age_error_max_ns);
+  tip.add(other.tip);
+}
+
+void RatesTally::add(const RatesTally& other) {
+  for (std::size_t rate = 0; rate < graph.size(); ++rate) {
+    graph[rate].add(other.graph[rate]);
+    motion[rate].add(other.motion[rate]);
+  }
+  accepted += other.accepted;
+  rejected += other.rejected;
+  rejected_changed += other.rejected_changed;
+  frames_to_measured = std::max(frames_to_measured, other.frames_to_measured);
+}
+
+RatesTally follow_rates(const RatesRun& run) {
+  RatesTally tally;
   const Camera camera = hololens2_ahat();
   const Tool tool = centred_pen();
   const sim::MotionPointer hand = hand_of(run);
@@ -214,6 +233,7 @@ void follow_rates(const RatesRun& run, RatesTally& tally) {
     motion.tick(time, truth, tally.motion[r]);
     graph.tick(time, newest, truth, tally.graph[r], tally);
   }
+  return tally;
 }
 
 }  // namespace glint

@@ -20,6 +20,8 @@ struct GraphTally {
   std::int64_t ticks = 0, states_correct = 0;
   std::int64_t age_error_max_ns = 0;  // stated age against that of the frame it is based on
   Consistency tip;                    // of the sample's pose, with its stated covariance
+
+  void add(const GraphTally& other);
 };
 
 enum class Rate { fast, slow };
@@ -31,6 +33,8 @@ struct RatesTally {
   std::int64_t rejected_changed = 0;  // rejected frames that changed an estimate
   // Largest number of fresh frames until a tool that was not measured is measured again.
   std::int64_t frames_to_measured = 0;
+
+  void add(const RatesTally& other);
 };
 
 struct RatesRun {
@@ -38,6 +42,6 @@ struct RatesRun {
   std::uint64_t seed = 1, run = 0;
 };
 
-void follow_rates(const RatesRun& run, RatesTally& tally);
+[[nodiscard]] RatesTally follow_rates(const RatesRun& run);
 
 }  // namespace glint

@@ -36,27 +36,44 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// What is judged of one search.
+struct ReferenceTry {
+  ReferenceVerdict verdict = ReferenceVerdict::refused;
+  PoseDistance off;      // from the best known pose
+  PoseDistance off_fit;  // from the pose that fits these frames best
+  double sigma_mm = 0, sigma_degrees = 0;
+  double surface_mm = 0, inlier_share = 0;
+};
+
+ReferenceTry tried(const Reference& reference, const Pose& truth, const Pose& best_fit) {
+  const ModelAlignment& alignment = reference.found.alignment;
+  return {reference.verdict,
+          pose_distance(alignment.T_world_base, truth),
+          pose_distance(alignment.T_world_base, best_fit),
+          1e3 * std::sqrt(alignment.covariance.topLeftCorner<3, 3>().trace()),
+          k_degrees_per_radian * std::sqrt(alignment.covariance.bottomRightCorner<3, 3>().trace()),
+          1e3 * reference.found.judgement.median_m,
+          reference.found.judgement.inlier_share()};
+}
+
 // Converged poses relative to the best known pose, with their verdicts.
 struct ReferenceTally {
   int runs = 0, accepted = 0, ambiguous = 0, right = 0, correct_rejected = 0, wrong_accepted = 0;
   std::vector<double> mm, degrees, sigma_mm, sigma_degrees;  // of all runs, against `truth`
 
-  void add(const Reference& reference, const Pose& truth) {
-    const ModelAlignment& alignment = reference.found.alignment;
-    const PoseDistance off = pose_distance(alignment.T_world_base, truth);
+  void add(const ReferenceTry& one) {
     ++runs;
-    const bool is_accepted = reference.verdict == ReferenceVerdict::accepted;
+    const bool is_accepted = one.verdict == ReferenceVerdict::accepted;
     accepted += is_accepted ? 1 : 0;
-    ambiguous += reference.verdict == ReferenceVerdict::ambiguous ? 1 : 0;
-    const bool is_correct = off.within(20, 2);
+    ambiguous += one.verdict == ReferenceVerdict::ambiguous ? 1 : 0;
+    const bool is_correct = one.off.within(20, 2);
     right += is_correct ? 1 : 0;
     correct_rejected += is_correct && !is_accepted ? 1 : 0;
-    wrong_accepted += is_accepted && !off.within(40, 4) ? 1 : 0;
-    mm.push_back(off.mm);
-    degrees.push_back(off.degrees);
-    sigma_mm.push_back(1e3 * std::sqrt(alignment.covariance.topLeftCorner<3, 3>().trace()));
-    sigma_degrees.push_back(k_degrees_per_radian *
-                            std::sqrt(alignment.covariance.bottomRightCorner<3, 3>().trace()));
+    wrong_accepted += is_accepted && !one.off.within(40, 4) ? 1 : 0;
+    mm.push_back(one.off.mm);
+    degrees.push_back(one.off.degrees);
+    sigma_mm.push_back(one.sigma_mm);
+    sigma_degrees.push_back(one.sigma_degrees);
   }
   [[nodiscard]] double right_refused_share() const {
     return right > 0 ? 100.0 * correct_rejected / right : 0;
@@ -96,19 +113,24 @@ class Experiment {
     return find_reference(frames, scan_.published, alone).found.alignment;
   }
 
+  ReferenceTry try_scan(const std::vector<SceneFrame>& frames, const Pose& start,
+                        const Pose& best_fit) const {
+    return options_.piece(
+        [&] { return tried(find_reference(frames, start, {}), scan_.published, best_fit); });
+  }
+
   void together(const std::string& name, const std::vector<SceneFrame>& frames) {
     const Pose best = optimum(frames).T_world_base;
     ReferenceTally tally;
     int near_best = 0, near_published = 0;
     std::vector<double> surface, share;
     for (int i = 0; i < seeds_; ++i) {
-      const Reference r = find_reference(frames, initial_pose(0.1, 10, i), {});
-      tally.add(r, scan_.published);
-      near_best += pose_distance(r.found.alignment.T_world_base, best).within(5, 0.5) ? 1 : 0;
-      near_published +=
-          pose_distance(r.found.alignment.T_world_base, scan_.published).within(20, 2) ? 1 : 0;
-      surface.push_back(1e3 * r.found.judgement.median_m);
-      share.push_back(r.found.judgement.inlier_share());
+      const ReferenceTry one = try_scan(frames, initial_pose(0.1, 10, i), best);
+      tally.add(one);
+      near_best += one.off_fit.within(5, 0.5) ? 1 : 0;
+      near_published += one.off.within(20, 2) ? 1 : 0;
+      surface.push_back(one.surface_mm);
+      share.push_back(one.inlier_share);
     }
     std::vector<Figure> figures = tally.verdicts();
     figures.push_back({"near_optimum", "%", 100.0 * near_best / seeds_, Bar::at_least(99)});
@@ -121,7 +143,7 @@ class Experiment {
   void far(const std::string& name, const std::vector<SceneFrame>& frames) {
     ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i)
-      tally.add(find_reference(frames, initial_pose(0.4, 40, i), {}), scan_.published);
+      tally.add(try_scan(frames, initial_pose(0.4, 40, i), scan_.published));
     add(name, seeds_, tally.verdicts());
   }
 
@@ -130,11 +152,13 @@ class Experiment {
   void left_out() {
     double worst = 0;
     for (std::size_t out = 0; out < scan_.frames.size(); ++out) {
-      std::vector<SceneFrame> others = scan_.frames;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
-      const std::vector<SceneFrame> one{scan_.frames[out]};
-      const double published = surface_mm(one, scan_.published);
-      worst = std::max(worst, surface_mm(one, optimum(others).T_world_base) / published);
+      worst = std::max(worst, options_.piece([&] {
+        std::vector<SceneFrame> others = scan_.frames;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
+        const std::vector<SceneFrame> one{scan_.frames[out]};
+        const double published = surface_mm(one, scan_.published);
+        return surface_mm(one, optimum(others).T_world_base) / published;
+      }));
     }
     add("one frame left out", static_cast<int>(scan_.frames.size()),
         {{"median_beside_published", "", worst, Bar::at_most(1.1)}});
@@ -152,8 +176,9 @@ class Experiment {
     int accepted = 0;
     for (int i = 0; i < seeds_; ++i) {
       const double wide = i % 2 == 0 ? 1 : 4;
-      const Reference r = find_reference(frames, initial_pose(0.1 * wide, 10 * wide, i), {});
-      accepted += r.verdict == ReferenceVerdict::accepted ? 1 : 0;
+      const ReferenceTry one =
+          try_scan(frames, initial_pose(0.1 * wide, 10 * wide, i), scan_.published);
+      accepted += one.verdict == ReferenceVerdict::accepted ? 1 : 0;
     }
     add("robot cut out", seeds_,
         {{"accepted", "", static_cast<double>(accepted), Bar::at_most(0)}});
@@ -165,9 +190,9 @@ class Experiment {
     int near_best = 0;
     ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i) {
-      const Reference r = find_reference(one, initial_pose(0.1, 10, i), {});
-      near_best += pose_distance(r.found.alignment.T_world_base, best).within(10, 1) ? 1 : 0;
-      tally.add(r, scan_.published);
+      const ReferenceTry found = try_scan(one, initial_pose(0.1, 10, i), best);
+      near_best += found.off_fit.within(10, 1) ? 1 : 0;
+      tally.add(found);
     }
     std::vector<Figure> figures = tally.verdicts();
     figures.push_back({"near_optimum", "%", 100.0 * near_best / seeds_, Bar::at_least(98)});
@@ -186,9 +211,12 @@ class Experiment {
     ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i) {
       const auto number = static_cast<std::uint64_t>(i);
-      const SimulatedScene scene = simulate_scene(robot, settings, options_.seed, number);
-      const Pose start = initial_pose_near(scene.T_world_base, 0.4, 40, options_.seed, number);
-      tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
+      tally.add(options_.piece([&] {
+        const SimulatedScene scene = simulate_scene(robot, settings, options_.seed, number);
+        const Pose start = initial_pose_near(scene.T_world_base, 0.4, 40, options_.seed, number);
+        return tried(find_reference(scene.frames, start, {}), scene.T_world_base,
+                     scene.T_world_base);
+      }));
     }
     add("ur5 straight up, seeds +-40 cm, 40 deg", seeds_, tally.verdicts());
   }
@@ -216,12 +244,15 @@ class Experiment {
       settings.views = views;
       settings.mask = mask;
       const auto instance = static_cast<std::uint64_t>(i);
-      SimulatedScene scene = simulate_scene(robot, settings, options_.seed, instance);
-      for (SceneFrame& frame : scene.frames) {
-        if (cloud != nullptr) frame.cloud = posed_cloud(*cloud, scene.positions, name);
-      }
-      const Pose start = initial_pose_near(scene.T_world_base, 0.1, 10, options_.seed, instance);
-      tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
+      tally.add(options_.piece([&] {
+        SimulatedScene scene = simulate_scene(robot, settings, options_.seed, instance);
+        for (SceneFrame& frame : scene.frames) {
+          if (cloud != nullptr) frame.cloud = posed_cloud(*cloud, scene.positions, name);
+        }
+        const Pose start = initial_pose_near(scene.T_world_base, 0.1, 10, options_.seed, instance);
+        return tried(find_reference(scene.frames, start, {}), scene.T_world_base,
+                     scene.T_world_base);
+      }));
     }
     // One view without a mask is rejected if half of the robot is hidden, right or wrong.
     const bool judged = mask || views > 1;

@@ -194,23 +194,24 @@ CaseList count_tries(const std::vector<TryResult>& tries) {
 
 CaseList run_reference_tries(const CaseOptions& options) {
   const std::string path = options.out + "/reference_tries.csv";
-  std::vector<TryResult> tries = read_tries(path, options.seed);
-  std::erase_if(tries, [&](const TryResult& one) { return one.number >= options.tries; });
-  std::vector<bool> finished(static_cast<std::size_t>(options.tries));
-  for (const TryResult& one : tries) finished[static_cast<std::size_t>(one.number)] = true;
+  const std::vector<TryResult> finished = read_tries(path, options.seed);
   const TryScan all = read_try_scan(options.data);
   std::ofstream file(path, std::ios::app);
+  std::vector<TryResult> tries;
   for (int number = 0; number < options.tries; ++number) {
-    if (finished[static_cast<std::size_t>(number)]) continue;
-    tries.push_back(run_try(all, options.seed, number));
-    file << try_line(tries.back()) << std::flush;
-    if (!file)
-      throw InputError(path + ": cannot be written; expected a writable folder with free space");
-    if (options.progress) options.progress(static_cast<int>(tries.size()), options.tries);
+    tries.push_back(options.piece([&] {
+      for (const TryResult& one : finished) {
+        if (one.number == number) return one;
+      }
+      const TryResult fresh = run_try(all, options.seed, number);
+      file << try_line(fresh) << std::flush;
+      if (!file)
+        throw InputError(path + ": cannot be written; expected a writable folder with free space");
+      return fresh;
+    }));
+    if (options.progress) options.progress(number + 1, options.tries);
   }
-  CaseList list = count_tries(tries);
-  list.plots = {path};
-  return list;
+  return count_tries(tries);
 }
 
 }  // namespace glint

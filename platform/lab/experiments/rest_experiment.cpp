@@ -34,6 +34,10 @@ struct Sums {
     position += error.head<3>().squaredNorm();
     rotation += error.tail<3>().squaredNorm();
   }
+  void add(const Sums& other) {
+    position += other.position;
+    rotation += other.rotation;
+  }
   [[nodiscard]] double position_mm(int n) const { return 1000 * std::sqrt(position / n); }
   [[nodiscard]] double rotation_deg(int n) const {
     return k_degrees_per_radian * std::sqrt(rotation / n);
@@ -43,11 +47,16 @@ struct Sums {
 struct Results {
   std::array<Sums, 2> glint;
   Sums single;  // the last frame alone
+
+  void add(const Results& other) {
+    for (std::size_t i = 0; i < glint.size(); ++i) glint[i].add(other.glint[i]);
+    single.add(other.single);
+  }
 };
 
 // One stroke that ends smoothly in the held pose, then rest.
-void one_run(const std::vector<Vector3>& model, double tilt_rad, const PointNoise& noise,
-             Results& results) {
+Results one_run(const std::vector<Vector3>& model, double tilt_rad, const PointNoise& noise) {
+  Results results;
   const PointCamera camera;
   ToolMotion motion;
   motion.settings = EstimatorSettings{}.motion;
@@ -70,6 +79,7 @@ void one_run(const std::vector<Vector3>& model, double tilt_rad, const PointNois
     results.glint[taken++].add(pose_of(motion.estimate()), truth);
     if (taken == k_after_s.size()) results.single.add(measured.value, truth);
   }
+  return results;
 }
 
 }  // namespace
@@ -82,8 +92,10 @@ CaseList run_static_tool(const CaseOptions& options) {
   for (const RestBars& bars : k_cases) {
     Results results;
     for (int run = 0; run < runs; ++run) {
-      one_run(model, bars.tilt_deg / k_degrees_per_radian,
-              {1, options.seed, static_cast<std::uint64_t>(run)}, results);
+      results.add(options.piece([&] {
+        return one_run(model, bars.tilt_deg / k_degrees_per_radian,
+                       {1, options.seed, static_cast<std::uint64_t>(run)});
+      }));
       if (options.progress) options.progress(++done, runs * static_cast<int>(k_cases.size()));
     }
     const std::string name =

@@ -36,38 +36,48 @@ Pose oscillated(const Pose& middle, const Oscillation& swing, double phase, Time
   return pose;
 }
 
+struct SineErrors {
+  double squares = 0;
+  int n = 0;
+};
+
+// Adds the errors of one run.
+void add_sine_run(const PointNoise& noise, const Oscillation& swing, Predictor& predictor,
+                  SineErrors& errors) {
+  const PointCamera camera;
+  const std::vector<Vector3> model = tool_8700339();
+  const Pose middle = held_pose(k_sine_tilt_rad, noise.seed, noise.run);
+  const double phase = 0.7 * static_cast<double>(noise.run);  // no simple fraction of a full turn
+  for (int frame = 0; frame < k_sine_frames; ++frame) {
+    const Time time = frame_time(frame);
+    Result<UncertainPose> measured = measure(camera, model, oscillated(middle, swing, phase, time),
+                                             noise, static_cast<std::uint64_t>(frame));
+    if (!measured) continue;
+    measured.value.time = time;
+    predictor.update(measured.value);
+    if (frame < k_first_judged) continue;
+    const Vector3 truth = oscillated(middle, swing, phase, time + k_sine_ahead).translation;
+    errors.squares += (predictor.predict(time + k_sine_ahead).translation - truth).squaredNorm();
+    ++errors.n;
+  }
+}
+
 ExperimentCase oscillation_case(const CaseOptions& options, const Oscillation& swing,
                                 const char* method, const std::function<PredictorPointer()>& make,
                                 Bar bar) {
-  const PointCamera camera;
-  const std::vector<Vector3> model = tool_8700339();
   const int runs = options.quick ? k_sine_quick_runs : k_sine_runs;
-  double squares = 0;
-  int n = 0;
-  for (int run = 0; run < runs; ++run) {
-    const PointNoise noise{1, options.seed, static_cast<std::uint64_t>(run)};
-    const Pose middle = held_pose(k_sine_tilt_rad, noise.seed, noise.run);
-    const double phase = 0.7 * run;  // no simple fraction of a full turn
-    const PredictorPointer predictor = make();
-    for (int frame = 0; frame < k_sine_frames; ++frame) {
-      const Time time = frame_time(frame);
-      Result<UncertainPose> measured =
-          measure(camera, model, oscillated(middle, swing, phase, time), noise,
-                  static_cast<std::uint64_t>(frame));
-      if (!measured) continue;
-      measured.value.time = time;
-      predictor->update(measured.value);
-      if (frame < k_first_judged) continue;
-      const Vector3 truth = oscillated(middle, swing, phase, time + k_sine_ahead).translation;
-      squares += (predictor->predict(time + k_sine_ahead).translation - truth).squaredNorm();
-      ++n;
+  const SineErrors errors = options.piece([&] {
+    SineErrors sums;
+    for (int run = 0; run < runs; ++run) {
+      add_sine_run({1, options.seed, static_cast<std::uint64_t>(run)}, swing, *make(), sums);
+      if (options.progress) options.progress(run + 1, runs);
     }
-    if (options.progress) options.progress(run + 1, runs);
-  }
+    return sums;
+  });
   return {std::string("2 Hz, ") + swing.name,
           method,
-          n,
-          {{"error_rms", "mm", 1000 * std::sqrt(squares / n), bar}}};
+          errors.n,
+          {{"error_rms", "mm", 1000 * std::sqrt(errors.squares / errors.n), bar}}};
 }
 
 }  // namespace

@@ -49,9 +49,10 @@ void add_recorded(const CaseOptions& options, CaseList& list) {
   const std::vector<Trajectory> motions = load_recordings(options);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     for (const bool slow : {false, true}) {
-      StrokeErrors errors;
-      follow_recorded_stroke(motions[i], slow ? milliseconds(200) : Duration{22'222'222},
-                             options.seed, errors);
+      const StrokeErrors errors = options.piece([&] {
+        return follow_recorded_stroke(motions[i], slow ? milliseconds(200) : Duration{22'222'222},
+                                      options.seed);
+      });
       list.cases.push_back(
           stroke_case(std::string(k_recordings[i].name) + (slow ? ", 5 Hz" : ", 45 Hz"), "smoothed",
                       errors, false));
@@ -75,7 +76,8 @@ CaseList run_strokes(const CaseOptions& options) {
   for (const StrokeCase& stroke : k_stroke_cases) {
     StrokeTally tally;
     for (int i = 0; i < seeds; ++i) {
-      follow_stroke(stroke, options.seed + static_cast<std::uint64_t>(i), tally);
+      tally.add(options.piece(
+          [&] { return follow_stroke(stroke, options.seed + static_cast<std::uint64_t>(i)); }));
       if (options.progress) options.progress(++done, all);
     }
     const bool judged = !options.quick;

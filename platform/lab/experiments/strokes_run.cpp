@@ -170,7 +170,15 @@ double StrokeErrors::position_sigma_m() const { return root_mean(position_varian
 double StrokeErrors::rotation_sigma_rad() const { return root_mean(rotation_variance_rad2, n); }
 double StrokeErrors::from_line_rms_m() const { return root_mean(from_line_m2, n); }
 
-void follow_stroke(const StrokeCase& stroke, std::uint64_t seed, StrokeTally& tally) {
+void StrokeTally::add(const StrokeTally& other) {
+  smoothed.add(other.smoothed);
+  live.add(other.live);
+  ticks += other.ticks;
+  frames += other.frames;
+}
+
+StrokeTally follow_stroke(const StrokeCase& stroke, std::uint64_t seed) {
+  StrokeTally tally;
   const sim::Simulator simulator(stroke_scenario(stroke, seed));
   const Tool& pen = simulator.scenario().tools.front().tool;
   StrokeChain chain(simulator.scenario(), stroke.reference_body);
@@ -210,10 +218,11 @@ void follow_stroke(const StrokeCase& stroke, std::uint64_t seed, StrokeTally& ta
     judge(hindsight, tally.smoothed);
     judge(sample, tally.live);
   }
+  return tally;
 }
 
-void follow_recorded_stroke(const Trajectory& motion, Duration period, std::uint64_t seed,
-                            StrokeErrors& errors) {
+StrokeErrors follow_recorded_stroke(const Trajectory& motion, Duration period, std::uint64_t seed) {
+  StrokeErrors errors;
   PredictionSettings settings;
   settings.period = period;
   const NoisyRecording recording = noisy(motion, settings, seed);
@@ -243,6 +252,7 @@ void follow_recorded_stroke(const Trajectory& motion, Duration period, std::uint
     frames.push_back({measured, filter.noise_scale(), {}, Matrix6::Zero()});
   }
   judge();
+  return errors;
 }
 
 }  // namespace glint

@@ -44,14 +44,16 @@ struct StrokeTally {
   StrokeErrors smoothed, live;  // at the same ticks
   std::int64_t ticks = 0;       // of the strokes
   std::int64_t frames = 0;      // measured frames within the strokes
+
+  void add(const StrokeTally& other);
 };
 
-void follow_stroke(const StrokeCase& stroke, std::uint64_t seed, StrokeTally& tally);
+[[nodiscard]] StrokeTally follow_stroke(const StrokeCase& stroke, std::uint64_t seed);
 
 // A recorded motion, measured with declared noise every `period`, smoothed and judged at the
 // measurements and between them. Gaps of the recording end a stroke.
-void follow_recorded_stroke(const Trajectory& motion, Duration period, std::uint64_t seed,
-                            StrokeErrors& errors);
+[[nodiscard]] StrokeErrors follow_recorded_stroke(const Trajectory& motion, Duration period,
+                                                  std::uint64_t seed);
 
 // With options.data also recorded motions. Strokes at 45 and 5 Hz with and without a reference
 // body, a straight edge and a circle.

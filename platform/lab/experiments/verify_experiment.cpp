@@ -84,7 +84,7 @@ ExperimentCase agreeing(const char* name, Drawn drawn, int devices, const CaseOp
   for (int i = 0; i < devices; ++i, step()) {
     const VerifyDevice device{drawn, LargeError::nothing,
                               options.seed + static_cast<std::uint64_t>(i)};
-    wrong += is_verdict(true, device, touches_of(options)) ? 0 : 1;
+    wrong += options.piece([&] { return is_verdict(true, device, touches_of(options)); }) ? 0 : 1;
   }
   return {name,
           "glint",
@@ -101,7 +101,7 @@ ExperimentCase disagreeing(int devices, const CaseOptions& options,
     const auto kind = static_cast<std::size_t>(i) % k_large_errors.size();
     const VerifyDevice device{Drawn::below_one_sigma, k_large_errors[kind],
                               options.seed + static_cast<std::uint64_t>(i)};
-    if (is_verdict(false, device, touches_of(options))) continue;
+    if (options.piece([&] { return is_verdict(false, device, touches_of(options)); })) continue;
     wrong[kind] += 1;
     all += 1;
   }

@@ -104,8 +104,10 @@ CaseList run_warnings(const CaseOptions& options) {
     int named = 0, others = 0;
     double sigmas = 0;  // of the case's source, the largest
     for (int i = 0; i < seeds; ++i) {
-      const auto findings = findings_of(one, options.seed + static_cast<std::uint64_t>(i),
-                                        options.quick ? k_warned_quick_s : k_warned_s, options.out);
+      const auto findings = options.piece([&] {
+        return findings_of(one, options.seed + static_cast<std::uint64_t>(i),
+                           options.quick ? k_warned_quick_s : k_warned_s, options.out);
+      });
       bool this_named = false, other_named = false;
       for (const CalibrationFinding& finding : findings) {
         const bool right = matches(finding.source, one.large);

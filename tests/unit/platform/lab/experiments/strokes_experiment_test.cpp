@@ -8,7 +8,7 @@ namespace {
 // Two random seeds that the figures of the experiment do not use.
 StrokeTally tally_of(const StrokeCase& stroke) {
   StrokeTally tally;
-  for (const std::uint64_t seed : {901, 902}) follow_stroke(stroke, seed, tally);
+  for (const std::uint64_t seed : {901, 902}) tally.add(follow_stroke(stroke, seed));
   return tally;
 }
 
