@@ -82,11 +82,19 @@ Json recordings_json(const std::vector<TrackedRecording>& all) {
 }  // namespace
 
 std::vector<std::string> recordings_below(const std::string& source, const std::string& kind) {
+  if (!kind.empty() || !fs::is_directory(source)) return {};
+  // A folder of MCAP files is a bag by its kind, unless one of them is Glint's own.
+  const std::string own_kind = kind_at(source);
+  const bool may_be_bag = own_kind == "rosbag" && !fs::exists(source + "/metadata.yaml");
+  if (!own_kind.empty() && !may_be_bag) return {};
   std::vector<std::string> names;
-  if (!kind.empty() || !fs::is_directory(source) || !kind_at(source).empty()) return names;
+  bool has_own = false;
   for (const fs::directory_entry& entry : fs::directory_iterator(source)) {
-    if (!kind_at(entry.path().string()).empty()) names.push_back(entry.path().filename().string());
+    const std::string of_entry = kind_at(entry.path().string());
+    has_own = has_own || of_entry == "recording";
+    if (!of_entry.empty()) names.push_back(entry.path().filename().string());
   }
+  if (may_be_bag && !has_own) return {};
   std::sort(names.begin(), names.end());
   return names;
 }
