@@ -1,4 +1,4 @@
-// Tool changes in a cell file.
+// Tool changes, and allowed inputs over DDS, in a cell file.
 #include <gtest/gtest.h>
 
 #include "platform/cells/cell.hpp"
@@ -47,6 +47,19 @@ TEST(ToolChanges, AreRefusedByNameAndLine) {
                                                    "[[tool_change]]\nat_s = 2\nadd = \"pen\"\n"),
             "cell.toml:6: tool_change: at_s is not later than the previous one; expected "
             "increasing times from 0 on");
+}
+
+TEST(DdsInputs, AreAllowedByNameOnly) {
+  for (const bool allowed : default_cell().dds.allow.by_input) EXPECT_FALSE(allowed);
+  const Cell cell = cell_from_text("[dds]\nallow = [\"buttons\", \"joint_states\"]\n", "cell.toml");
+  EXPECT_EQ(cell.dds.allow.by_input,
+            (std::array<bool, k_dds_inputs>{true, false, false, true, false}));
+  EXPECT_TRUE(
+      cell_from_text("[dds]\ntool_changes = true\n", "cell.toml").dds.allow[DdsInput::tools])
+      << "the key of older cells";
+  EXPECT_EQ(error_message_for("[dds]\nallow = [\"button\"]\n"),
+            "cell.toml:2: dds.allow: \"button\"; expected names of inputs: joint_states, "
+            "robot_description, initial_pose, buttons, tools");
 }
 
 }  // namespace
