@@ -14,6 +14,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* for memfd_create: before any other header */
 #endif
+#include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -81,9 +82,13 @@ static inline int glint_frames_connect(struct glint_frames* f, const char* path,
   return reply.refused[0] == 0 ? 0 : glint_frames_fail(f, reply.refused);
 }
 static inline uint16_t* glint_frames_begin(struct glint_frames* f) {
-  uint32_t back;
-  while (recv(f->socket_fd, &back, sizeof back, MSG_DONTWAIT) == (ssize_t)sizeof back)
+  uint32_t back; ssize_t got;
+  while ((got = recv(f->socket_fd, &back, sizeof back, MSG_DONTWAIT)) == (ssize_t)sizeof back)
     f->busy &= ~(1u << back % GLINT_FRAMES_SLOTS);
+  if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) { /* also with no slot to send */
+    glint_frames_fail(f, "Glint closed the connection");
+    return NULL;
+  }
   for (f->slot = 0; f->slot < GLINT_FRAMES_SLOTS && (f->busy >> f->slot & 1u); ++f->slot) {}
   if (f->slot == GLINT_FRAMES_SLOTS) return NULL;
   char* slot = f->memory + f->slot * f->slot_bytes;

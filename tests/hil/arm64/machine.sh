@@ -6,7 +6,10 @@
 machine=$root/tests/hil/arm64
 sysroot=$build/sysroot
 modules=(net/can/can.ko net/can/can-raw.ko drivers/net/can/dev/can-dev.ko
-  drivers/net/can/sja1000/sja1000.ko drivers/net/can/sja1000/kvaser_pci.ko)
+  drivers/net/can/sja1000/sja1000.ko drivers/net/can/sja1000/kvaser_pci.ko net/sched/sch_tbf.ko
+  drivers/virtio/virtio_pci_modern_dev.ko drivers/virtio/virtio_pci_legacy_dev.ko
+  drivers/virtio/virtio_pci.ko drivers/block/virtio_blk.ko crypto/crc32c_generic.ko lib/crc16.ko
+  fs/mbcache.ko fs/jbd2/jbd2.ko fs/ext4/ext4.ko)
 
 skip() { echo "skipped: $*"; exit 77; }
 
@@ -23,7 +26,7 @@ check_tools() {  # programs of the host that this case needs
 # The kernel that Debian's meta package names today; only what the test needs is kept of it.
 fetch_kernel() {
   local package folder
-  [ ! -d "$work/kernel/boot" ] || return 0
+  ! cmp -s <(printf '%s\n' "${modules[@]}") "$work/kernel/modules" || return 0
   board_apt() { "$root/platform/apps/board/board_apt" "$sysroot.apt" "$@"; }
   package=$(board_apt apt-cache depends linux-image-rt-arm64 2> /dev/null |
     awk '/Depends: linux-image/ {print $2; exit}')
@@ -33,6 +36,7 @@ fetch_kernel() {
     dpkg-deb --fsys-tarfile "$folder"/*.deb | tar -x -C "$folder" --wildcards './boot/vmlinuz-*' \
       "${modules[@]/#/./lib/modules/*/kernel/}"; then
     rm "$folder"/*.deb
+    printf '%s\n' "${modules[@]}" > "$folder/modules"
     rm -rf "$work/kernel"
     mv "$folder" "$work/kernel"
   else
@@ -74,7 +78,7 @@ make_image() {  # guest
 pack_image() { (cd "$image" && find . -print0 | cpio --null -o -H newc --quiet) > "$1"; }
 
 # What the guest gives is written into `folder`; its console goes to standard output.
-boot() {  # folder, packed image
+boot() {  # folder, packed image, further devices
   cd "$1"
   exec timeout 900 qemu-system-aarch64 -M virt,dtb-randomness=off -cpu cortex-a72 -m 1024 \
     -accel tcg -icount shift=1,sleep=off -rtc base=2026-01-01,clock=vm \
@@ -83,7 +87,7 @@ boot() {  # folder, packed image
     -kernel "$work"/kernel/boot/vmlinuz-* -initrd "$2" \
     -append "console=ttyAMA0 panic=-1 quiet nokaslr" \
     -object can-bus,id=bus0 -device kvaser_pci,canbus=bus0 -device kvaser_pci,canbus=bus0 \
-    < /dev/null 2>&1
+    "${@:3}" < /dev/null 2>&1
 }
 
 # A plan for this cell on one core, and what may be said of it: FOLDER/plan.toml, check.json.
