@@ -54,6 +54,12 @@ Json output_of(const SentTicksSummary& left) {
           {"longest_without_measurement_ms", tool.longest_without_measurement.seconds() * 1e3}};
 }
 
+Json as_json(const CanErrorCounts& bus) {
+  return {{"bus_off", bus.bus_off}, {"restarted", bus.restarted},
+          {"passive", bus.passive}, {"overflow", bus.overflow},
+          {"other", bus.other},     {"no_acknowledge", bus.no_acknowledge}};
+}
+
 Json losses_json(const SinkOutcome& result) {
   Json losses = Json::array();
   for (const Loss& loss : losses_of(result)) {
@@ -91,7 +97,9 @@ Json as_json(const CompanionResult& result) {
        {{"frames", result.can_frames},
         {"sent", result.can.sent},
         {"dropped", result.can.dropped},
-        {"failed", result.can.failed}}},
+        {"failed", result.can.failed},
+        {"sets_replaced", result.can.sets_replaced},
+        {"bus_errors", as_json(result.can.bus)}}},
       {"can_input",
        {{"buttons", result.can_received.received},
         {"refused", result.can_received.refused},

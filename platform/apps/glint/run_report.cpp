@@ -200,6 +200,8 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
       {"can_sent", result.can.sent},
       {"can_dropped", result.can.dropped},
       {"can_failed", result.can.failed},
+      {"can_sets_replaced", result.can.sets_replaced},
+      {"can_bus_off", result.can.bus.bus_off},
       {"can_bus_load", result.can_bus_load},
       {"key_events", result.key_events},
       {"can_input",
@@ -320,7 +322,8 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   row("page faults after start", std::to_string(result.page_faults_after_start));
   row("CAN frames", std::to_string(result.can.sent) + " sent, " +
                         std::to_string(result.can.failed) + " refused, " +
-                        std::to_string(result.can.dropped) + " dropped (bus load " +
+                        std::to_string(result.can.dropped) + " dropped, " +
+                        std::to_string(result.can.bus.bus_off) + " times off the bus (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
   if (const ButtonFrameCounts& received = result.can_received; received.any()) {
     row("received over CAN", std::to_string(received.received) + " frames of buttons; " +

@@ -39,6 +39,10 @@ void add_can(const CanSinkCounts& can, Losses& losses) {
     losses.add(LossKind::can, can.dropped,
                counted(can.dropped, "frames dropped, queue full: the bus or the disk is too slow"));
   }
+  if (can.bus.bus_off > 0) {
+    losses.add(LossKind::can, can.bus.bus_off,
+               counted(can.bus.bus_off, "times off the bus: frames were lost until it restarted"));
+  }
   if (can.failed > 0) {
     losses.add(LossKind::can, can.failed,
                counted(can.failed, "frames refused: ") +

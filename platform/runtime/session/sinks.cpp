@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "kernels/wire/can_messages.hpp"
 #include "platform/input_error.hpp"
 #include "platform/runtime/session/recorded_cell.hpp"
 #include "platform/sinks/dds/dds_process.hpp"
@@ -70,6 +71,8 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
   can.directory = out_;
   can.unix_offset_ns = unix_offset_ns;
   can.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  can.frames_a_tick =
+      limits_of(cell).tools * can_frames_per_pose(can.format) + k_can_periodic_frames;
   can.when_full = cell.realtime ? OverflowPolicy::drop : OverflowPolicy::wait;
   can_ = open_can_sink(cell.can.sink, can);
   if (cell.can.sink.rfind("log:", 0) == 0) can_file_ = in_folder(out_, cell.can.sink.substr(4));

@@ -91,9 +91,7 @@ void TickGroup::run(const Now& now, Time woken, const graph::OverrunDecision* re
   offer_samples();
 }
 
-void TickGroup::stop_safe() noexcept {
-  (void)send_one(heartbeat_frame(node_, CanNodeState::stopped), now_());
-}
+void TickGroup::stop_safe() noexcept { send_alone(heartbeat_frame(node_, CanNodeState::stopped)); }
 
 void TickGroup::compute_substitute(const Now& now) noexcept {
   if (overrun_.kind == graph::OverrunKind::not_enabled) {
@@ -154,7 +152,7 @@ bool TickGroup::lacks_measurement() const noexcept {
 void TickGroup::send(const Now& now, Time woken) noexcept {
   send_poses(woken);
   for (const CanFrame& frame : frames_->frames().subspan(pose_frames())) {
-    send_one(with_node_state(frame), now_());
+    send_alone(with_node_state(frame));
   }
   send_emergency(now.tick);
   runner_->add_span(k_span_sent, woken, now_());
@@ -184,6 +182,7 @@ void TickGroup::send_poses(Time woken) noexcept {
     tick.states[static_cast<std::size_t>(t)] = samples_->items[static_cast<std::size_t>(t)].state;
   }
   bool first = true;
+  if (sinks_.can != nullptr) sinks_.can->begin_set();
   for (const CanFrame& frame : frames_->frames().first(pose_frames())) {
     const Time time = now_();
     const bool accepted = send_one(frame, time);
@@ -209,14 +208,18 @@ void TickGroup::send_emergency(Time tick) noexcept {
   OverrunNote note;
   if (frame_notes_->pop(note) || own_notes_.pop(note)) {
     const graph::OverrunDecision& decision = note.decision;
-    (void)send_one(overrun_frame(node_, {note.group, static_cast<std::uint8_t>(decision.kind),
-                                         reason_of(decision.policy), decision.after_node}),
-                   now_());
+    send_alone(overrun_frame(node_, {note.group, static_cast<std::uint8_t>(decision.kind),
+                                     reason_of(decision.policy), decision.after_node}));
     return;
   }
   if (const auto kind = losses_.next_due_report(tick)) {
-    (void)send_one(lost_output_frame(node_, static_cast<std::uint8_t>(*kind)), now_());
+    send_alone(lost_output_frame(node_, static_cast<std::uint8_t>(*kind)));
   }
+}
+
+void TickGroup::send_alone(const CanFrame& frame) noexcept {
+  if (sinks_.can != nullptr) sinks_.can->begin_set();
+  (void)send_one(frame, now_());
 }
 
 bool TickGroup::send_one(const CanFrame& frame, Time time) noexcept {

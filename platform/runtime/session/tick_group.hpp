@@ -83,6 +83,7 @@ class TickGroup {
   void send_emergency(Time tick) noexcept;
   [[nodiscard]] std::uint64_t carried_sequence() const noexcept;
   bool send_one(const CanFrame& frame, Time time) noexcept;
+  void send_alone(const CanFrame& frame) noexcept;
   [[nodiscard]] std::size_t pose_frames() const noexcept;
   [[nodiscard]] bool lacks_measurement() const noexcept;
   void offer_samples() noexcept;

@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace glint::socketcan_sink_test {
 namespace {
@@ -76,8 +78,12 @@ TEST(SocketCanSink, CountsWhatAFullQueueRefusesAsDropped) {
   const Bus bus;
   const CanFrame frame = frame_of(false, false, false, 8);
   std::uint64_t sent = 0;
-  while (bus.sink->send(frame, {})) ASSERT_LT(++sent, 1'000'000u);
-  EXPECT_FALSE(bus.sink->send(frame, {}));
+  const auto send_alone = [&] {
+    bus.sink->begin_set();
+    return bus.sink->send(frame, {});
+  };
+  while (send_alone()) ASSERT_LT(++sent, 1'000'000u);
+  EXPECT_FALSE(send_alone());
   CanSinkCounts counts = bus.sink->counts();
   EXPECT_EQ(counts.sent, sent);
   EXPECT_EQ(counts.dropped, 2u);
@@ -86,8 +92,51 @@ TEST(SocketCanSink, CountsWhatAFullQueueRefusesAsDropped) {
   canfd_frame raw{};
   while (bus.receive(raw) > 0) {
   }
-  EXPECT_TRUE(bus.sink->send(frame, {})) << "there is room again";
+  EXPECT_TRUE(send_alone()) << "there is room again";
   EXPECT_EQ(bus.sink->counts().sent, sent + 1);
+}
+
+// An overloaded bus: each estimate that a receiver gets is complete, and the newest that fitted.
+TEST(SocketCanSink, ReplacesEstimatesThatWaitByTheNewest) {
+  constexpr int k_ticks = 400, k_frames = 5, k_passed_a_tick = 3;
+  const Bus bus;
+  std::vector<std::pair<int, int>> received;  // estimate, frame
+  std::vector<int> offered_at;                // ticks of the estimates that were accepted
+  canfd_frame raw{};
+  const auto pass = [&](int frames) {
+    for (int i = 0; i < frames && bus.receive(raw) > 0; ++i) {
+      received.emplace_back(raw.data[0] + 256 * raw.data[1], raw.data[2]);
+    }
+  };
+  CanFrame frame = frame_of(false, false, false, 8);
+  for (int tick = 0; tick < k_ticks; ++tick) {
+    bus.sink->begin_set();
+    int accepted = 0;
+    for (int i = 0; i < k_frames; ++i) {
+      frame.data = {static_cast<std::uint8_t>(tick % 256), static_cast<std::uint8_t>(tick / 256),
+                    static_cast<std::uint8_t>(i)};
+      accepted += bus.sink->send(frame, {}) ? 1 : 0;
+    }
+    EXPECT_TRUE(accepted == 0 || accepted == k_frames) << "tick " << tick << ": " << accepted;
+    if (accepted == k_frames) offered_at.push_back(tick);
+    pass(k_passed_a_tick);
+  }
+  std::size_t before = 0;
+  do {
+    before = received.size();
+    pass(k_ticks * k_frames);
+    bus.sink->begin_set();  // sends the rest
+  } while (received.size() > before);
+  ASSERT_EQ(received.size(), offered_at.size() * k_frames);
+  for (std::size_t i = 0; i < received.size(); ++i) {
+    const auto expected = std::pair(offered_at[i / k_frames], static_cast<int>(i % k_frames));
+    ASSERT_EQ(received[i], expected) << "frame " << i;
+  }
+  const CanSinkCounts counts = bus.sink->counts();
+  EXPECT_GT(counts.sets_replaced, 100u);
+  EXPECT_EQ(counts.sets_replaced, static_cast<std::uint64_t>(k_ticks) - offered_at.size());
+  EXPECT_EQ(counts.dropped, counts.sets_replaced * k_frames);
+  EXPECT_EQ(counts.sent, received.size());
 }
 
 TEST(SocketCanSink, KeepsTheReasonOfTheFirstFrameThatFailed) {
