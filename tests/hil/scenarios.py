@@ -48,7 +48,8 @@ def chosen(names):
     for name in names:
         if name not in accepted:
             sys.exit(f"{name}: no such scenario; expected one of {', '.join(sorted(accepted))}")
-    return [s for s in scenarios if {"all", s["name"], s["group"]} & set(names)]
+    return [s for s in scenarios if {s["name"], s["group"]} & set(names) or
+            "all" in names and s["group"] != "interactive"]
 
 
 def write(folder, names):

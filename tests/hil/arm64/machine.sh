@@ -80,7 +80,7 @@ pack_image() { (cd "$image" && find . -print0 | cpio --null -o -H newc --quiet) 
 # What the guest gives is written into `folder`; its console goes to standard output.
 boot() {  # folder, packed image, further devices
   cd "$1"
-  exec timeout 900 qemu-system-aarch64 -M virt,dtb-randomness=off -cpu cortex-a72 -m 1024 \
+  exec timeout 7200 qemu-system-aarch64 -M virt,dtb-randomness=off -cpu cortex-a72 -m 1024 \
     -accel tcg -icount shift=1,sleep=off -rtc base=2026-01-01,clock=vm \
     -nodefaults -no-user-config -nographic -no-reboot -serial stdio \
     -semihosting-config enable=on,userspace=on,target=native \
