@@ -42,6 +42,7 @@ struct Limits {
   int centroid_pixels_per_blob = k_centroid_pixels_per_blob;
   int range_pixels_per_blob = k_range_pixels_per_blob;
   int range_samples_per_blob = k_range_samples_per_blob;
+  int covariance_frames = 0;  // on CAN, a tick: one a tool where the cell sends them
 };
 
 }  // namespace glint

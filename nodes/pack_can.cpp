@@ -24,7 +24,7 @@ void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& 
   frames.dropped = 0;
   const CanPacking packing{settings.format, settings.base_identifier, now.unix_offset_ns};
   const int count = std::min(samples.count, limits.tools);
-  counts_ = {{1, count}};
+  counts_ = {{1, settings.format == CanFormat::fd_covariance ? 2 * count : count}};
   for (int t = 0; t < count; ++t) {
     add_pose_frames(samples.items[static_cast<std::size_t>(t)], packing, frames);
   }

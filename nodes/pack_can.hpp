@@ -37,7 +37,8 @@ struct PackCan {
   static constexpr std::array<std::string_view, 4> k_loops = {"call", "poses", "emergencies",
                                                               "node_frames"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    return {{1, limits.tools, limits.tools, k_can_periodic_frames}};
+    // A covariance counts as one more pose.
+    return {{1, limits.tools + limits.covariance_frames, limits.tools, k_can_periodic_frames}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 

@@ -46,7 +46,7 @@ CanFrameBits fd_bits(const CanFrameShape& shape) {
 }  // namespace
 
 CanFrameShape shape_of(const CanMessageLayout& message) noexcept {
-  const bool fd = message.format == CanFormat::fd;
+  const bool fd = is_fd(message.format);
   return {message.bytes, false, fd, fd};
 }
 
@@ -78,7 +78,7 @@ CanLoad bus_load(const CanTraffic& traffic, const CanBitRates& rates) noexcept {
 }
 
 std::optional<std::string> check_bus_load(const CanTraffic& traffic, const CanBitRates& rates) {
-  const bool fd = traffic.format == CanFormat::fd;
+  const bool fd = is_fd(traffic.format);
   if (!(rates.nominal > 0) || (fd && !(rates.data > 0)))
     return "CAN: a bit rate of 0 or less; expected bits per second, e.g. 1000000";
   const CanLoad load = bus_load(traffic, rates);

@@ -1,5 +1,8 @@
 #include "kernels/wire/can_decode.hpp"
 
+#include <array>
+#include <cstddef>
+
 #include "kernels/wire/bits.hpp"
 #include "kernels/wire/can_frames.hpp"
 #include "kernels/wire/e2e.hpp"
@@ -139,6 +142,39 @@ Result<DecodedFdPose> decode_fd_pose(const CanFrame& frame) noexcept {
   pose.unix_measurement_ns = static_cast<std::int64_t>(raw(m.signal("MeasurementTime")));
   pose.frame_sequence = static_cast<std::uint32_t>(raw(m.signal("FrameSequence")));
   return {pose, Reason::none};
+}
+
+Result<DecodedCovariance> decode_covariance(const CanFrame& frame) noexcept {
+  constexpr const CanMessageLayout& m = k_covariance_message;
+  const bool good = frame.fd && !frame.extended && frame.length == m.bytes &&
+                    check_p05(frame.bytes(), static_cast<std::uint16_t>(frame.identifier));
+  if (!good) return {{}, Reason::frame_invalid};
+  constexpr auto sigmas = m.signals_from<can_table::k_pose_axes>(can_table::k_covariance_sigmas[0]);
+  constexpr auto correlations =
+      m.signals_from<can_table::k_correlations.size()>(can_table::k_correlations[0]);
+  DecodedCovariance decoded;
+  decoded.counter = static_cast<std::uint8_t>(unsigned_of(frame.bytes(), m.signal("Counter")));
+  decoded.state = static_cast<TrackState>(unsigned_of(frame.bytes(), m.signal("State")) & 3U);
+  decoded.known = decoded.state == TrackState::measured || decoded.state == TrackState::predicted;
+  std::array<double, can_table::k_pose_axes> sigma{};
+  for (std::size_t i = 0; i < sigmas.size() && decoded.known; ++i) {
+    const double value = value_or_unknown(unsigned_of(frame.bytes(), sigmas[i]), sigmas[i]);
+    sigma[i] = value;
+    decoded.known = value >= 0;
+  }
+  if (!decoded.known) return {decoded, Reason::none};
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    decoded.covariance(row, row) = sigma[i] * sigma[i];
+    for (std::size_t j = i + 1; j < sigma.size(); ++j, ++at) {
+      const auto column = static_cast<Eigen::Index>(j);
+      const auto raw = static_cast<double>(signed_of(frame.bytes(), correlations[at]));
+      decoded.covariance(row, column) = decoded.covariance(column, row) =
+          raw * correlations[at].step * sigma[i] * sigma[j];
+    }
+  }
+  return {decoded, Reason::none};
 }
 
 }  // namespace glint

@@ -64,4 +64,12 @@ struct DecodedFdPose {
 };
 [[nodiscard]] Result<DecodedFdPose> decode_fd_pose(const CanFrame& frame) noexcept;
 
+struct DecodedCovariance {
+  std::uint8_t counter = 0;
+  TrackState state = TrackState::none;
+  Matrix6 covariance = Matrix6::Zero();  // of x, y, z [m] and rotation [rad]
+  bool known = false;                    // false: no pose, or a deviation beyond its field
+};
+[[nodiscard]] Result<DecodedCovariance> decode_covariance(const CanFrame& frame) noexcept;
+
 }  // namespace glint

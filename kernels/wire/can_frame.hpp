@@ -25,7 +25,7 @@ struct CanFrame {
 // Frame of a message, with zeros as data.
 [[nodiscard]] constexpr CanFrame frame_of(const CanMessageLayout& message,
                                           std::uint32_t identifier) noexcept {
-  const bool fd = message.format == CanFormat::fd;
+  const bool fd = is_fd(message.format);
   return {.identifier = identifier,
           .length = static_cast<std::uint8_t>(message.bytes),
           .fd = fd,

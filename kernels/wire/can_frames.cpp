@@ -1,6 +1,8 @@
 #include "kernels/wire/can_frames.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "kernels/wire/bits.hpp"
@@ -181,6 +183,38 @@ CanFrame fd(const PoseSample& s, std::uint32_t base, std::int64_t unix_offset_ns
   return frame;
 }
 
+CanFrame covariance_fd(const PoseSample& s, std::uint32_t base) {
+  constexpr const CanMessageLayout& m = k_covariance_message;
+  constexpr auto sigmas = m.signals_from<can_table::k_pose_axes>(can_table::k_covariance_sigmas[0]);
+  constexpr auto correlations =
+      m.signals_from<can_table::k_correlations.size()>(can_table::k_correlations[0]);
+  CanFrame frame = frame_of(m, base + m.offset);
+  const std::span<std::uint8_t> bytes(frame.data.data(), frame.length);
+  put(bytes, m.signal("State"), state_bits(s.state));
+  std::array<double, can_table::k_pose_axes> sigma{};
+  for (std::size_t i = 0; i < sigma.size() && s.has_pose(); ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    sigma[i] = std::sqrt(s.covariance(axis, axis));  // NaN of a negative one: unknown
+    put(bytes, sigmas[i], saturated(sigma[i], sigmas[i]));
+  }
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < sigma.size() && s.has_pose(); ++i) {
+    for (std::size_t j = i + 1; j < sigma.size(); ++j, ++at) {
+      const double covariance =
+          s.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      const CanSignal& signal = correlations[at];
+      const double product = sigma[i] * sigma[j];
+      const double correlation = product > 0 ? std::clamp(covariance / product, -1.0, 1.0) : 0;
+      put(bytes, signal,
+          as_bits(
+              quantize(correlation, 1 / signal.step, signal.raw_min(), signal.raw_max()).value));
+    }
+  }
+  const auto counter = static_cast<unsigned>(s.tick_number % k_p05_counters);
+  protect_p05(bytes, static_cast<std::uint16_t>(frame.identifier), counter);
+  return frame;
+}
+
 }  // namespace
 
 void add_pose_frames(const PoseSample& sample, const CanPacking& packing,
@@ -190,8 +224,9 @@ void add_pose_frames(const PoseSample& sample, const CanPacking& packing,
     return;
   }
   const std::uint32_t base = packing.base_identifier + k_can_tool_stride * sample.tool;
-  if (packing.format == CanFormat::fd) {
+  if (is_fd(packing.format)) {
     frames.add(fd(sample, base, packing.unix_offset_ns));
+    if (packing.format == CanFormat::fd_covariance) frames.add(covariance_fd(sample, base));
     return;
   }
   const auto add = [&](const CanMessageLayout& message, std::uint64_t word) {

@@ -30,6 +30,7 @@ inline constexpr const CanMessageLayout& k_angular_velocity_message =
     can_message("AngularVelocity");
 inline constexpr const CanMessageLayout& k_quality_message = can_message("Quality");
 inline constexpr const CanMessageLayout& k_fd_message = can_message("PoseFd");
+inline constexpr const CanMessageLayout& k_covariance_message = can_message("CovarianceFd");
 
 // The largest base identifier for which the identifiers of all tools fit 11 bits.
 inline constexpr std::uint32_t k_can_base_max =

@@ -4,8 +4,10 @@
 // load and the check for equal identifiers derive from it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 
@@ -18,9 +20,27 @@ inline constexpr std::uint32_t k_can_identifier_max = 0x7FF;                // 1
 inline constexpr std::uint32_t k_can_extended_identifier_max = 0x1FFFFFFF;  // 29 bits
 
 enum class CanFormat : std::uint8_t {
-  classic,  // five frames of 8 bytes for one pose
-  fd,       // one frame of 64 bytes for one pose, data phase at the fast bit rate
+  classic,        // five frames of 8 bytes for one pose
+  fd,             // one frame of 64 bytes for one pose, data phase at the fast bit rate
+  fd_covariance,  // that frame, and one of 48 bytes with the pose's covariance
 };
+
+// In the order of the enumerators, as cells and plans state them.
+inline constexpr std::array<std::string_view, 3> k_can_format_names{"classic", "fd",
+                                                                    "fd_covariance"};
+[[nodiscard]] constexpr std::string_view name_of(CanFormat format) noexcept {
+  return k_can_format_names[static_cast<std::size_t>(format)];
+}
+// Of one of these names; classic for another text.
+[[nodiscard]] constexpr CanFormat can_format_of(std::string_view name) noexcept {
+  for (const CanFormat format : {CanFormat::fd, CanFormat::fd_covariance}) {
+    if (name_of(format) == name) return format;
+  }
+  return CanFormat::classic;
+}
+[[nodiscard]] constexpr bool is_fd(CanFormat format) noexcept {
+  return format != CanFormat::classic;
+}
 
 struct CanUnit {
   std::string_view name;
@@ -140,7 +160,8 @@ struct CanMessageLayout {
   }
   // The poses of a run have one format; the other messages are always sent.
   [[nodiscard]] constexpr bool sent_in(CanFormat used) const noexcept {
-    if (rule == CanIdentifierRule::of_tool) return format == used;
+    if (rule == CanIdentifierRule::of_tool)
+      return format == used || (format == CanFormat::fd && used == CanFormat::fd_covariance);
     return rule != CanIdentifierRule::of_cell;
   }
 };

@@ -133,7 +133,7 @@ inline constexpr std::array<CanSignal, 12> k_emergency{{
 }  // namespace can_table
 
 // Offsets are those of the published identifiers; a tool has 16.
-inline constexpr std::array<CanMessageLayout, 11> k_can_messages{{
+inline constexpr std::array<CanMessageLayout, 12> k_can_messages{{
     {"Position", CanIdentifierRule::of_tool, 0, 8, CanFormat::classic, k_can_each_tick,
      can_table::k_position,
      "Position of the tip. E2E profile 1 (both), data identifier = CAN identifier. Valid 0: no "
@@ -153,6 +153,11 @@ inline constexpr std::array<CanMessageLayout, 11> k_can_messages{{
      can_table::k_pose_fd,
      "The whole pose in one CAN FD frame. E2E profile 5, data identifier = CAN identifier. State 0 "
      "with zeros: no pose, or it does not fit."},
+    {"CovarianceFd", CanIdentifierRule::of_tool, 9, 48, CanFormat::fd_covariance, k_can_each_tick,
+     can_table::k_covariance_fd,
+     "Covariance of the pose of the same counter: standard deviations and correlations of the "
+     "position and of the rotation about the frame's axes. E2E profile 5, data identifier = CAN "
+     "identifier. State 0 with zeros: no pose."},
     {"Heartbeat", CanIdentifierRule::of_node, 0x700, 1, CanFormat::classic, 100,
      can_table::k_heartbeat, "CANopen heartbeat; the first one is the boot-up message."},
     {"TimeSync", CanIdentifierRule::of_bus, 0xE, 8, CanFormat::classic, 1000,
@@ -187,7 +192,7 @@ template <typename Predicate>
 // Frames of one pose in a format, and of the node: those with a period, once a tick at most.
 [[nodiscard]] constexpr int can_frames_per_pose(CanFormat format) {
   return count_can_messages([&](const CanMessageLayout& m) {
-    return m.rule == CanIdentifierRule::of_tool && m.format == format;
+    return m.rule == CanIdentifierRule::of_tool && m.sent_in(format);
   });
 }
 inline constexpr int k_can_periodic_frames =

@@ -1,8 +1,8 @@
 // Signals of a pose on CAN: those of the five classic messages and of the FD message.
 //
 // Classic, 8 bytes: E2E profile 1 (both), data identifier = CAN identifier; the counter is the tick
-// number modulo 15. FD, 64 bytes: E2E profile 5, counter modulo 256. All frames of one estimate
-// share the counter.
+// number modulo 15. FD, 64 bytes, and 48 of a covariance: E2E profile 5, counter modulo 256. All
+// frames of one estimate share the counter.
 #pragma once
 
 #include <array>
@@ -160,6 +160,42 @@ inline constexpr std::array<CanSignal, 25> k_pose_fd{{
      .comment = "Unix time of mid-exposure. 0: unknown."},
     {.name = "FrameSequence", .field = {480, 32}},
 }};
+
+// Rows and columns of a pose's covariance, and the correlations of its upper triangle, row by row.
+inline constexpr std::size_t k_pose_axes = 6;
+inline constexpr std::array<std::string_view, k_pose_axes> k_covariance_sigmas{
+    "SigmaX", "SigmaY", "SigmaZ", "SigmaRotationX", "SigmaRotationY", "SigmaRotationZ"};
+inline constexpr std::array<std::string_view, 15> k_correlations{
+    "CorrelationXY",  "CorrelationXZ",  "CorrelationXRx",  "CorrelationXRy",  "CorrelationXRz",
+    "CorrelationYZ",  "CorrelationYRx", "CorrelationYRy",  "CorrelationYRz",  "CorrelationZRx",
+    "CorrelationZRy", "CorrelationZRz", "CorrelationRxRy", "CorrelationRxRz", "CorrelationRyRz"};
+inline constexpr double k_correlation_step = 1.0 / static_cast<double>(k_word_max);
+inline constexpr int k_first_sigma_bit = 32;
+constexpr auto covariance_signals() {
+  std::array<CanSignal, 3 + k_pose_axes + k_correlations.size()> signals{};
+  signals[0] = {.name = "Crc", .field = {0, 16}};
+  signals[1] = {.name = "Counter", .field = {16, 8}};
+  signals[2] = {.name = "State", .field = {24, 3}, .names = k_states};
+  int bit = k_first_sigma_bit;
+  std::size_t at = 3;
+  for (std::size_t i = 0; i < k_pose_axes; ++i, bit += 16) {
+    const bool moves = i < 3;
+    signals[at++] = {.name = k_covariance_sigmas[i],
+                     .field = {bit, 16},
+                     .step = moves ? 0.01e-3 : k_hundredth_deg,
+                     .unit = moves ? k_mm : k_deg,
+                     .meaning = k_or_more};
+  }
+  for (const std::string_view name : k_correlations) {
+    signals[at++] = {.name = name,
+                     .field = {bit, 16, intel_signed},
+                     .step = k_correlation_step,
+                     .limit = k_word_max};
+    bit += 16;
+  }
+  return signals;
+}
+inline constexpr auto k_covariance_fd = covariance_signals();
 
 }  // namespace can_table
 }  // namespace glint

@@ -126,7 +126,7 @@ CanMessage own_frame(const CanMessageLayout& message, const Cell& cell, int tool
 }  // namespace
 
 std::vector<CanMessage> own_frames_of(const Cell& cell, int tools) {
-  const CanFormat format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  const CanFormat format = cell.can.format;
   const auto sent = [&](const CanMessageLayout& m) { return m.sent_in(format); };
   std::vector<CanMessage> frames;
   for (int t = 0; t < tools; ++t) {

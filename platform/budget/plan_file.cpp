@@ -52,12 +52,12 @@ class PlanParser {
   void read_bus(const toml::table* table) {
     if (table == nullptr) fail(1, "no [bus]; expected frames, bit_rate, tools and tick_hz");
     TomlReader reader(*table, file_, "bus.");
-    const bool fd = reader.one_of("frames", "classic", {"classic", "fd"}) == "fd";
+    plan_.traffic.format =
+        can_format_of(reader.one_of("frames", "classic", {"classic", "fd", "fd_covariance"}));
     plan_.bus.nominal =
         static_cast<double>(reader.integer("bit_rate", 1'000'000, 10'000, 1'000'000));
     plan_.bus.data =
         static_cast<double>(reader.integer("data_bit_rate", 4'000'000, 10'000, 8'000'000));
-    plan_.traffic.format = fd ? CanFormat::fd : CanFormat::classic;
     plan_.traffic.tools = static_cast<int>(reader.integer("tools", 1, 1, k_tools_max));
     plan_.traffic.tick_hz = reader.real("tick_hz", 250, 1, 1000);
     reader.done();

@@ -32,7 +32,7 @@ std::string plan_text(const Plan& plan, const TaskModel& model) {
   text += "board_sha256 = \"" + plan.board_sha256 + "\"\n";
   text += line("cores = %d\n\n[bus]\n", plan.cores);
   text += line("frames = \"%s\"\nbit_rate = %lld\ndata_bit_rate = %lld\ntools = %d\ntick_hz = %g\n",
-               plan.traffic.format == CanFormat::fd ? "fd" : "classic",
+               std::string(name_of(plan.traffic.format)).c_str(),
                wide(static_cast<std::int64_t>(plan.bus.nominal)),
                wide(static_cast<std::int64_t>(plan.bus.data)), plan.traffic.tools,
                plan.traffic.tick_hz);

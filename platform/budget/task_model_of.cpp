@@ -95,9 +95,8 @@ TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemSh
 }
 
 int can_frames_per_tick_max(const Cell& cell, int tools) {
-  constexpr int k_classic_pose_frames = 5;
   // In addition to the poses: a heartbeat, an emergency for each tool, the pair of time frames.
-  return tools * (cell.can.fd ? 1 : k_classic_pose_frames) + 1 + tools + 2;
+  return tools * can_frames_per_pose(cell.can.format) + 1 + tools + 2;
 }
 
 std::string graphs_signature(const TaskModel& model) {
@@ -110,7 +109,7 @@ std::string graphs_signature(const TaskModel& model) {
 }
 
 CanTraffic traffic_of(const Cell& cell) {
-  return {cell.tools.count, cell.tick_hz, cell.can.fd ? CanFormat::fd : CanFormat::classic};
+  return {cell.tools.count, cell.tick_hz, cell.can.format};
 }
 
 CanBitRates bit_rates_of(const Cell& cell) {

@@ -318,6 +318,7 @@ Limits limits_of(const Cell& cell) {
   limits.blobs = cell.budget.blobs;
   limits.runs_per_band = cell.budget.runs_per_band;
   limits.search_steps = cell.budget.search_steps;
+  if (cell.can.format == CanFormat::fd_covariance) limits.covariance_frames = limits.tools;
   if (cell.background) limits.background_steps = cell.background->steps;
   const bool follows = cell.mapping && !cell.mapping->model.empty();
   limits.tracking_steps = follows ? limits.background_steps : 0;

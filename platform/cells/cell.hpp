@@ -17,6 +17,7 @@
 #include "kernels/pose/bias_correction.hpp"
 #include "kernels/pose/tool.hpp"
 #include "kernels/units.hpp"
+#include "kernels/wire/can_layout.hpp"
 #include "platform/cells/dds_input.hpp"
 #include "platform/cells/named_file.hpp"
 #include "platform/cells/tool_changes.hpp"
@@ -27,7 +28,7 @@ namespace glint {
 
 struct CanSettings {
   std::string sink = "log:can.log";  // log:FILE or socketcan:IF; FILE is relative to --out
-  bool fd = false;                   // FD frame instead of classic frames
+  CanFormat format = CanFormat::classic;
   std::uint32_t base_id = 0x1A0;
   std::int64_t bit_rate = 1'000'000;
   std::int64_t data_bit_rate = 4'000'000;

@@ -80,7 +80,8 @@ void read_can(const toml::table* table, Cell& cell) {
   TomlReader reader(*table, cell.file, "can.");
   CanSettings& can = cell.can;
   can.sink = reader.text("sink", can.sink);
-  can.fd = reader.one_of("frames", "classic", {"classic", "fd"}) == "fd";
+  can.format =
+      can_format_of(reader.one_of("frames", "classic", {"classic", "fd", "fd_covariance"}));
   can.base_id =
       static_cast<std::uint32_t>(reader.integer("base_id", k_can_base_default, 1, k_can_base_max));
   can.bit_rate = reader.integer("bit_rate", can.bit_rate, 10'000, 1'000'000);

@@ -19,7 +19,7 @@ CHANGES = {
     {{"Temperature", {0, 16, intel_signed}, 0.01, {"degC", 1}}}};
 
 }  // namespace can_table"""),
-        ("std::array<CanMessageLayout, 11> k_can_messages{{", """std::array<CanMessageLayout, 12> k_can_messages{{
+        ("std::array<CanMessageLayout, 12> k_can_messages{{", """std::array<CanMessageLayout, 13> k_can_messages{{
     {"Temperature", CanIdentifierRule::of_bus, 0xD, 2, CanFormat::classic, 1000,
      can_table::k_temperature, "Of the camera."},"""),
     ],

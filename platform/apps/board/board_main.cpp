@@ -109,7 +109,7 @@ int run(const Arguments& arguments) {
   if (arguments.measure_system) {
     CanSinkOptions can;
     can.directory = arguments.options.out;
-    can.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+    can.format = cell.can.format;
     SystemShareOptions options;
     options.core = arguments.options.core;
     const auto sink = open_can_sink(cell.can.sink, can);

@@ -28,7 +28,7 @@ DbcBus bus_of(const Cell& cell) {
   DbcBus bus;
   bus.address = {cell.can.base_id, static_cast<std::uint32_t>(cell.can.node),
                  cell.can.buttons.value_or(0)};
-  bus.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  bus.format = cell.can.format;
   bus.tick_hz = cell.tick_hz;
   for (int t = 0; t < cell.tools.count; ++t)
     bus.tools.emplace_back(cell.tools.items[static_cast<std::size_t>(t)].name.data());

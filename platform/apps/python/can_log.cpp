@@ -54,7 +54,7 @@ void put_quality(const DecodedQuality& quality, CanPoseRow& row) {
 class ToolSets {
  public:
   ToolSets(int tool, const Cell& cell)
-      : tool_(tool), fd_(cell.can.fd), period_ns_(1e9 / cell.tick_hz) {}
+      : tool_(tool), fd_(is_fd(cell.can.format)), period_ns_(1e9 / cell.tick_hz) {}
 
   void add(const CandumpRecord& record, std::uint32_t offset, std::vector<CanPoseRow>& rows) {
     CanPoseRow part = empty_row(record.unix_ns, tool_);
@@ -192,7 +192,8 @@ std::vector<CanPoseRow> read_can_log(const std::string& path, const Cell& cell) 
     if (frame.extended || frame.identifier < cell.can.base_id) continue;
     const std::uint32_t at = frame.identifier - cell.can.base_id;
     const std::uint32_t tool = at / k_can_tool_stride, offset = at % k_can_tool_stride;
-    const bool of_pose = cell.can.fd ? offset == k_fd_offset : offset <= k_quality_message.offset;
+    const bool of_pose =
+        is_fd(cell.can.format) ? offset == k_fd_offset : offset <= k_quality_message.offset;
     if (tool < static_cast<std::uint32_t>(k_tools_max) && of_pose)
       tools[tool].add(*record, offset, rows);
   }

@@ -187,7 +187,7 @@ void configure(const Cell& cell, Output& output) {
       Vector3::Constant(square(cell.robot_sigma_rad));
   predict.limits = limits_of(cell);
   PackCan& pack = output.node<PackCan>();
-  pack.settings.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  pack.settings.format = cell.can.format;
   pack.settings.base_identifier = cell.can.base_id;
   pack.settings.node = static_cast<unsigned>(cell.can.node);
   pack.limits = predict.limits;

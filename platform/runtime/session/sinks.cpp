@@ -37,8 +37,7 @@ std::string joined(const std::vector<std::string>& lines) {
 Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
 
 double checked_bus_load(const Cell& cell) {
-  const CanTraffic traffic{cell.tools.count, cell.tick_hz,
-                           cell.can.fd ? CanFormat::fd : CanFormat::classic};
+  const CanTraffic traffic{cell.tools.count, cell.tick_hz, cell.can.format};
   const CanBitRates rates{static_cast<double>(cell.can.bit_rate),
                           static_cast<double>(cell.can.data_bit_rate)};
   if (const auto refusal = check_bus_load(traffic, rates)) {
@@ -70,7 +69,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
   CanSinkOptions can;
   can.directory = out_;
   can.unix_offset_ns = unix_offset_ns;
-  can.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  can.format = cell.can.format;
   can.frames_a_tick =
       limits_of(cell).tools * can_frames_per_pose(can.format) + k_can_periodic_frames;
   can.when_full = cell.realtime ? OverflowPolicy::drop : OverflowPolicy::wait;

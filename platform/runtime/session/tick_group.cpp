@@ -32,7 +32,7 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
       runner_(&runner),
       frame_notes_(&frame_notes),
       node_(static_cast<unsigned>(cell.can.node)),
-      can_fd_(cell.can.fd),
+      frames_a_pose_(can_frames_per_pose(cell.can.format)),
       lost_after_(cell.lost_after),
       samples_(&output_->output<PoseSamples>()),
       frames_(&output_->output<CanFrames>()),
@@ -137,8 +137,7 @@ std::uint64_t TickGroup::carried_sequence() const noexcept {
 
 // Number of pose frames at this tick; they precede the node's own frames.
 std::size_t TickGroup::pose_frames() const noexcept {
-  const int of_tool = can_fd_ ? 1 : k_can_frames_per_pose_max;
-  return static_cast<std::size_t>(std::min(samples_->count * of_tool, frames_->count));
+  return static_cast<std::size_t>(std::min(samples_->count * frames_a_pose_, frames_->count));
 }
 
 bool TickGroup::lacks_measurement() const noexcept {

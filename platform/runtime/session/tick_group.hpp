@@ -96,7 +96,7 @@ class TickGroup {
   OverrunNotes* frame_notes_;
   OverrunNotes own_notes_;
   unsigned node_;
-  bool can_fd_;
+  int frames_a_pose_;
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last tick
   bool skipped_ = false;            // no output at the last tick

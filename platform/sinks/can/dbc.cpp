@@ -164,7 +164,7 @@ class DbcWriter {
 
   void add_attributes(const DbcMessage& message) {
     const CanMessageLayout& layout = message.layout;
-    if (layout.format == CanFormat::fd) {
+    if (is_fd(layout.format)) {
       add_attribute("VFrameFormat", message, k_standard_can_fd);
       add_attribute("CANFD_BRS", message, 1);
     }

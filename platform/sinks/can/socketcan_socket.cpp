@@ -25,7 +25,7 @@ void require(int socket, const std::string& interface, CanFormat format) {
     missing(interface, std::string("cannot be queried: ") + std::strerror(errno));
   if ((request.ifr_flags & IFF_UP) == 0)
     missing(interface, "is down; expected up (ip link set " + interface + " up)");
-  if (format != CanFormat::fd) return;
+  if (!is_fd(format)) return;
   if (::ioctl(socket, SIOCGIFMTU, &request) != 0 || request.ifr_mtu < int{CANFD_MTU})
     missing(interface, "carries no CAN FD frames; expected mtu 72 (ip link set " + interface +
                            " type can ... fd on)");

@@ -80,7 +80,8 @@ void ControllerSide::run() {
                                 static_cast<std::uint32_t>(script_.cycle_us),
                                 static_cast<std::uint32_t>(script_.speed_max),
                                 1000,
-                                100'000};
+                                100'000,
+                                k_heartbeat};
   follow_begin(&follower_, &settings, static_cast<std::uint64_t>(start_us_), 0, put_decision);
   events_.push_back({start_us_, "first cycle"});
   while (!stop_) {

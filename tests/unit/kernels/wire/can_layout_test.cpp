@@ -63,7 +63,7 @@ TEST(CanLayout, RejectsTwoMessagesOfOneIdentifier) {
   messages[1].offset = messages[0].offset;
   EXPECT_FALSE(is_consistent(messages)) << "two messages of a tool";
   messages = k_can_messages;
-  messages[7].offset = messages[0].offset;
+  messages[8].offset = messages[0].offset;
   EXPECT_FALSE(is_consistent(messages)) << "time and position";
   messages = k_can_messages;
   messages[0].offset = k_can_tool_stride;
@@ -86,7 +86,7 @@ TEST(CanMessages, GiveEachToolAndTheNodeIdentifiersOfTheirOwn) {
     const int times = message.rule == CanIdentifierRule::of_tool ? k_tools_max : 1;
     for (int t = 0; t < times; ++t) identifiers.insert(identifier_of(message, address, t));
   }
-  EXPECT_EQ(identifiers.size(), 6U * 16 + 5);
+  EXPECT_EQ(identifiers.size(), 7U * 16 + 5);
   for (const std::uint32_t identifier : identifiers)
     EXPECT_EQ(identifiers.count(identifier), 1U) << std::hex << identifier;
   EXPECT_EQ(identifiers.count(0x1A0), 1U);

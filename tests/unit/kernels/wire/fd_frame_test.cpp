@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <limits>
+#include <random>
 
 #include "kernels/wire/can_decode.hpp"
 #include "kernels/wire/can_frames.hpp"
@@ -202,6 +204,92 @@ TEST(FdFrame, SendsFiguresBeyondTheirFieldsAsUnknown) {
     EXPECT_NEAR(q.age_s, beyond ? -1 : last * k_fd_message.signal("Age").step, 1e-9);
     EXPECT_NEAR(q.registration_rms_m, beyond ? -1 : s.registration_rms_m, 1e-12);
   }
+}
+
+CanFrame packed_covariance(const PoseSample& sample) {
+  CanFrames frames;
+  add_pose_frames(sample, {.format = CanFormat::fd_covariance}, frames);
+  EXPECT_EQ(frames.count, 2);
+  EXPECT_EQ(frames.items[0].data, packed(sample).data) << "the pose's frame is unchanged";
+  return frames.items[1];
+}
+
+Matrix6 random_covariance(std::mt19937& random, double size) {
+  std::normal_distribution<double> normal;
+  Matrix6 factor;
+  for (int i = 0; i < 36; ++i) factor(i / 6, i % 6) = size * normal(random);
+  return factor * factor.transpose();
+}
+
+TEST(CovarianceFrame, ComesBackWithinAStepOfEachDeviation) {
+  constexpr const CanMessageLayout& m = k_covariance_message;
+  std::mt19937 random(22);
+  for (int i = 0; i < 2000; ++i) {
+    PoseSample s = random_sample(random);
+    s.covariance = random_covariance(random, 0.01);
+    const CanFrame frame = packed_covariance(s);
+    EXPECT_EQ(frame.length, 48);
+    EXPECT_EQ(frame.identifier, k_can_base_default + k_can_tool_stride * s.tool + 9);
+    const auto decoded = decode_covariance(frame);
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded.value.counter, s.tick_number % 256);
+    EXPECT_EQ(decoded.value.state, s.state);
+    ASSERT_TRUE(decoded.value.known);
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column < 6; ++column) {
+        const auto step = [](int axis) {
+          return axis < 3 ? m.signal("SigmaX").step : m.signal("SigmaRotationX").step;
+        };
+        const double a = std::sqrt(s.covariance(row, row));
+        const double b = std::sqrt(s.covariance(column, column));
+        const double near =
+            step(row) * b + step(column) * a + a * b * can_table::k_correlation_step;
+        EXPECT_NEAR(decoded.value.covariance(row, column), s.covariance(row, column), near)
+            << row << ", " << column;
+      }
+    }
+  }
+}
+
+TEST(CovarianceFrame, HasNoCovarianceWithoutAPose) {
+  std::mt19937 random(23);
+  PoseSample s = random_sample(random);
+  s.covariance = random_covariance(random, 0.01);
+  for (const TrackState state : {TrackState::none, TrackState::lost}) {
+    s.state = state;
+    const auto decoded = decode_covariance(packed_covariance(s));
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded.value.state, state);
+    EXPECT_FALSE(decoded.value.known);
+  }
+}
+
+TEST(CovarianceFrame, IsUnknownBeyondItsFieldsAndForNoCovariance) {
+  std::mt19937 random(24);
+  PoseSample s = random_sample(random);
+  for (const double variance : {1.0, -1e-9, std::numeric_limits<double>::quiet_NaN(),
+                                std::numeric_limits<double>::infinity()}) {
+    s.covariance = random_covariance(random, 0.01);
+    s.covariance(1, 1) = variance;  // a standard deviation of a metre exceeds 0.655 m
+    const auto decoded = decode_covariance(packed_covariance(s));
+    ASSERT_TRUE(decoded);
+    EXPECT_FALSE(decoded.value.known) << variance;
+  }
+}
+
+TEST(CovarianceFrame, IsRefusedWithAFlippedBit) {
+  std::mt19937 random(25);
+  PoseSample s = random_sample(random);
+  s.covariance = random_covariance(random, 0.01);
+  const CanFrame frame = packed_covariance(s);
+  for (int bit = 0; bit < 8 * frame.length; ++bit) {
+    CanFrame wrong = frame;
+    wrong.data[static_cast<std::size_t>(bit / 8)] ^= static_cast<std::uint8_t>(1 << bit % 8);
+    EXPECT_FALSE(decode_covariance(wrong)) << bit;
+  }
+  CanFrame wrong = frame;
+  wrong.length = 64;
+  EXPECT_FALSE(decode_covariance(wrong));
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST(ButtonsOfARun, LeaveInTheirBitsOfEveryTickWithoutAPoseToo) {
     const TemporaryFolder folder;
     Cell cell = recording_cell();
     cell.realtime = false;
-    cell.can.fd = fd;
+    cell.can.format = fd ? CanFormat::fd : CanFormat::classic;
     Sinks sinks(cell, {folder.path(), false, {}}, 0);
     TickSinks tick_sinks;
     tick_sinks.can = sinks.can();

@@ -23,7 +23,7 @@ except ImportError:
     sys.exit(77)
 
 BASE, STRIDE, TOOLS = 0x1A0, 0x10, 16
-FRAMES_A_SAMPLE = 12
+FRAMES_A_SAMPLE = 13
 NONE, LOST = 0, 3
 STATES = ("none", "predicted", "measured", "lost")
 REGISTRATIONS = ("none", "given", "accepted", "refused")
@@ -133,6 +133,8 @@ def expected(number, sample):
         "Counter": sample["tick"] % 256, "FrameSequence": sample["sequence"],
         "MeasurementTime": sample["unix_ns"],
         **{n: capped(v, step, over) for n, (v, step, _, over) in worth.items()}}
+    yield "CovarianceFd", {"Counter": sample["tick"] % 256, "State": sample["state"],
+                           **covariance(sample["covariance"] if has_pose else [0] * 36)}
     yield "Heartbeat", {"NodeState": sample["node_state"]}
     yield "Emergency", emergency(sample)
     group, kind, reason, after = sample["overrun"]
@@ -146,6 +148,21 @@ def expected(number, sample):
     yield "TimeSync", {**pair, "Type": 0x20, "UserByte": 0, "Seconds": seconds}
     yield "TimeFollowUp", {**pair, "Type": 0x28, "SyncToGateway": 0, "OverflowSeconds": later,
                            "Nanoseconds": nanoseconds}
+
+
+def covariance(matrix):
+    """Standard deviations in mm and degrees, and the correlations of the upper triangle."""
+    sigma = [math.sqrt(matrix[7 * i]) for i in range(6)]
+    names = ["X", "Y", "Z", "RotationX", "RotationY", "RotationZ"]
+    short = ["X", "Y", "Z", "Rx", "Ry", "Rz"]
+    shown = [1e3 * s for s in sigma[:3]] + [math.degrees(s) for s in sigma[3:]]
+    values = {f"Sigma{name}": capped(value, 0.01, 65535) for name, value in zip(names, shown)}
+    for i in range(6):
+        for j in range(i + 1, 6):
+            product = sigma[i] * sigma[j]
+            values[f"Correlation{short[i]}{short[j]}"] = \
+                matrix[6 * i + j] / product if product else 0.0
+    return values
 
 
 def emergency(sample):
@@ -212,7 +229,7 @@ def main():
         samples = [json.loads(l) for l in (folder / "samples.jsonl").open()]
         log = list(read_log(folder / "can.log"))
     by_identifier = {frame.arbitration_id.id: frame for frame in matrix.frames}
-    if len(by_identifier) != 6 * TOOLS + 4 or max(len(f.name) for f in matrix.frames) > 32:
+    if len(by_identifier) != 7 * TOOLS + 4 or max(len(f.name) for f in matrix.frames) > 32:
         wrong.append(f"{len(by_identifier)} identifiers: {[f.name for f in matrix.frames]}")
     if len(log) != FRAMES_A_SAMPLE * len(samples):
         wrong.append(f"{len(log)} frames for {len(samples)} samples")

@@ -39,9 +39,20 @@ void print(std::FILE* file, const PoseSample& s) {
                q.w());
   std::fprintf(file, "\"sigma_position_m\": %.17g, \"sigma_orientation_rad\": %.17g, ",
                s.sigma_position_m, s.sigma_orientation_rad);
-  std::fprintf(file, "\"registration_rms_m\": %.17g, \"age_ns\": %lld, \"unix_ns\": %lld, ",
+  std::fprintf(file, "\"covariance\": [");
+  for (int i = 0; i < 36; ++i) {
+    std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", s.covariance(i / 6, i % 6));
+  }
+  std::fprintf(file, "], \"registration_rms_m\": %.17g, \"age_ns\": %lld, \"unix_ns\": %lld, ",
                s.registration_rms_m, static_cast<long long>(s.age().nanoseconds),
                static_cast<long long>(s.measurement.nanoseconds + k_unix_offset_ns));
+}
+
+Matrix6 random_covariance(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Matrix6 factor;
+  for (int i = 0; i < 36; ++i) factor(i / 6, i % 6) = 0.01 * normal(random);
+  return factor * factor.transpose();
 }
 
 // Beside the random samples: values at the end of a field's range and beyond it.
@@ -101,12 +112,14 @@ int main(int count, char** arguments) {
     PoseSample s =
         i < k_random_samples ? random_sample(random) : edge_sample(i - k_random_samples, random);
     s.reason = static_cast<Reason>(static_cast<std::size_t>(i) % k_reasons);
+    s.covariance = random_covariance(random);
+    if (i == k_random_samples) s.covariance(2, 2) = 1;  // a deviation of a metre: beyond its field
     if (is_overrun(s.reason)) s.state = TrackState::lost;  // a tool that an overrun stopped
     const NodeValues node = node_values(i);
     print(truth, s);
     print(truth, node);
     CanFrames frames;
-    for (const CanFormat format : {CanFormat::classic, CanFormat::fd})
+    for (const CanFormat format : {CanFormat::classic, CanFormat::fd_covariance})
       add_pose_frames(s, {format, k_can_base_default, k_unix_offset_ns}, frames);
     frames.add(heartbeat_frame(32, node.state));
     frames.add(emergency_frame(32, s));
