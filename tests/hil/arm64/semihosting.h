@@ -3,7 +3,13 @@
 // Source: Arm, "Semihosting for AArch32 and AArch64", section 2.
 #pragma once
 
-enum { k_sys_open = 0x01, k_sys_close = 0x02, k_sys_write0 = 0x04, k_sys_write = 0x05, k_sys_exit = 0x18 };
+enum {
+  k_sys_open = 0x01,
+  k_sys_close = 0x02,
+  k_sys_write0 = 0x04,
+  k_sys_write = 0x05,
+  k_sys_exit = 0x18
+};
 enum { k_open_write_binary = 5, k_stopped_application_exit = 0x20026 };
 
 static long semihosting_call(unsigned long operation, void* block) {

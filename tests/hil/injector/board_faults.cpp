@@ -117,7 +117,7 @@ bool BoardFaults::apply(const Command& command) {
   switch (command.target) {
     case Target::interface:
       if (command.verb == "slow" && first > 0) {
-        run({k_tc, "qdisc", "add", "dev", interface_, "root", "tbf", "rate",
+        run({k_tc, "qdisc", "replace", "dev", interface_, "root", "tbf", "rate",
              std::to_string(first) + "bit", "burst", "160", "limit", "1600"});
       } else if (command.verb == "slow") {
         run({k_tc, "qdisc", "del", "dev", interface_, "root"});
