@@ -3,6 +3,7 @@
 // those that a program on the host requests through a serial port.
 #include <fcntl.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -65,6 +66,10 @@ class Scenario {
   // A command a line; each is answered by "ok" or the reason.
   void listen(const std::string& port) {
     const int serial = ::open(port.c_str(), O_RDWR | O_NOCTTY);
+    termios raw{};  // without an echo
+    ::tcgetattr(serial, &raw);
+    ::cfmakeraw(&raw);
+    ::tcsetattr(serial, TCSANOW, &raw);
     std::string line;
     while (!ended_) {
       pollfd waited{serial, POLLIN, 0};
