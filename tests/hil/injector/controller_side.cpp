@@ -19,6 +19,7 @@ namespace glint::hil {
 namespace {
 
 constexpr std::uint32_t k_base = 0x1A0;
+constexpr std::uint32_t k_heartbeat = 0x720;  // node 0x20
 constexpr std::int64_t k_poll_ms = 20;
 constexpr std::int64_t k_load_period_us = 1000;
 constexpr std::int64_t k_frame_bits = 135;  // classic, eight bytes, worst-case stuffing
