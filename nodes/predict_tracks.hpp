@@ -43,7 +43,7 @@ struct ReachSettings {
   // motion is visible to the filter.
   double acceleration_max_m_s2 = 30.0;
   Duration start_max = milliseconds(60);
-  // Up to this standard deviation a speed counts as estimated; the initial one is twice as large. A
+  // Up to this standard deviation a speed counts as estimated; the initial one is larger. A
   // tool detected once may be faster than any hand: it is searched in the whole frame until it is
   // detected again.
   double speed_sigma_max_m_s = 0.25;

@@ -27,7 +27,7 @@ struct MotionSettings {
   double angular_noise_rad2_s5 = 900;
   double angular_damping_1_s = 55;
   // Initial standard deviations of velocity and angular velocity, each axis.
-  double start_speed_m_s = 0.5;
+  double start_speed_m_s = 1;
   double start_angular_speed_rad_s = 3.0;
 };
 

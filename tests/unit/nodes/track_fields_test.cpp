@@ -44,14 +44,15 @@ class TrackFields : public testing::Test {
     follow.estimate = test::random_state(random_);
     follow.noise = {1.25, 2.5};
     follow.partial_mask = 0;
-    // A second pose that differs from the prediction; the size of the difference is irrelevant.
+    // The second pose's rotation differs from the prediction; the size of the difference is
+    // irrelevant. A position that differs would enlarge the covariance.
     const ToolMotionSettings settings;
     StaticWindowSums sums;
     UncertainPose seen;
     seen.covariance = Matrix6::Identity() * 1e-8;
     EXPECT_EQ(follow.motion.update(seen, {}, settings, sums).reason, Reason::none);
     seen.time = Time{} + milliseconds(22);
-    seen.pose.translation.x() = 0.2;
+    seen.pose.rotation = from_rotation_vector(Vector3(0.5, 0, 0));
     EXPECT_EQ(follow.motion.update(seen, {}, settings, sums).reason, Reason::none);
   }
   FittedTool& found() { return (*fitted_)[1].tools[k_tool]; }

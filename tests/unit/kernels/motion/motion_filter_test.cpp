@@ -196,19 +196,20 @@ TEST(MotionFilter, StartsWithThePosesCovarianceAndWhatAHandMayDo) {
   rest.block<3, 3>(k_rotation, k_rotation).setZero();
   Vector18 diagonal = Vector18::Zero();
   diagonal.segment<3>(k_velocity).setConstant(0.7 * 0.7);
-  diagonal.segment<3>(k_acceleration).setConstant(3.0 / (2 * 2));
+  diagonal.segment<3>(k_acceleration).setConstant(5.0 * 5);
   diagonal.segment<3>(k_angular_velocity).setConstant(4.0 * 4);
   diagonal.segment<3>(k_angular_acceleration).setConstant(500.0 / (2 * 40));
   EXPECT_LT((rest - MotionCovariance(diagonal.asDiagonal())).norm(), 1e-12);
 }
 
-// The acceleration's variance is stationary: damping removes as much as the process noise adds.
-TEST(MotionFilter, KeepsTheVarianceOfTheAccelerationsThatItStartsWith) {
+// The angular acceleration's variance is stationary: damping removes as much as the process noise
+// adds. The acceleration of a hand that comes into view decays to its stationary variance.
+TEST(MotionFilter, KeepsTheVarianceOfTheAngularAccelerationsThatItStartsWith) {
   MotionState state = initial_motion_state({Time{}, {}, 1e-6 * Matrix6::Identity()}, {});
   const double linear = state.covariance(k_acceleration, k_acceleration);
   const double angular = state.covariance(k_angular_acceleration, k_angular_acceleration);
   propagate(state, Time{10'000'000}, {}, {});
-  EXPECT_NEAR(state.covariance(k_acceleration, k_acceleration) / linear, 1, 1e-6);
+  EXPECT_LT(state.covariance(k_acceleration, k_acceleration), linear);
   EXPECT_NEAR(state.covariance(k_angular_acceleration, k_angular_acceleration) / angular, 1, 1e-4);
 }
 

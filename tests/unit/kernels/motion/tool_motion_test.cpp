@@ -240,7 +240,7 @@ TEST(ToolMotion, GivesTheSameBitsEverywhere) {
     }
     test::add_bits(hash, tool.motion->estimate());
   }
-  EXPECT_EQ(hash.value(), 17619910082872484812u);
+  EXPECT_EQ(hash.value(), 2011493776577771427u);
 }
 
 // Static poses with errors correlated over 0.5 s and over 20 s: 40 runs of 30 s at 5 Hz. The
