@@ -33,14 +33,13 @@ Result<UncertainPose> shifted(const Pose& pose, const Vector3& by) {
 const Pose k_pose = turned(0.1, 0.2, 0.3, {0.1, 0.2, 0.5});
 
 TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
-  MethodRecord record("any", small_tool(), {0, 0, {}});
-  record.begin_run();
+  MethodRecord record(small_tool(), {0, 0, {}});
   const Vector3 offset(0.01, 0, 0);  // offset between the world frames: no error
   for (int i = 0; i < 20; ++i)
     record.take_aligning(frame_with(k_pose), shifted(k_pose, offset), 0.5);
   for (int i = 0; i < 10; ++i)
     record.add_evaluated(frame_with(k_pose), shifted(k_pose, offset + Vector3(0, 0.003, 0)), 1.5);
-  const MethodFigures figures = record.figures();
+  const MethodFigures figures = record.samples().figures("any");
   EXPECT_EQ(figures.samples, 10);
   EXPECT_EQ(figures.position_mm.summary.count, 30u);  // x, y and z pooled
   EXPECT_NEAR(figures.position_mm.summary.mean_abs, 1.0, 1e-9);
@@ -50,44 +49,44 @@ TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
 }
 
 TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
-  MethodRecord record("any", small_tool(), {0, 0, {}});
-  record.begin_run();
+  MethodRecord record(small_tool(), {0, 0, {}});
   record.take_aligning(frame_with(k_pose), tip_result(k_pose), 1);
   record.add_evaluated(frame_with(k_pose), tip_result(k_pose, Reason::no_labeling), 1);
   sim::SimFrame no_head = frame_with(k_pose);
   no_head.head.valid = false;
   record.add_evaluated(no_head, tip_result(k_pose), 1);
   record.add_evaluated(frame_with(k_pose), tip_result(k_pose), 1);
-  EXPECT_EQ(record.figures().frames, 3);
-  EXPECT_EQ(record.figures().samples, 1);
-  ASSERT_EQ(record.path_m().size(), 3u);  // a gap for each frame without a pose
-  EXPECT_FALSE(record.path_m()[1].allFinite());
-  EXPECT_TRUE(record.path_m()[2].allFinite());
+  EXPECT_EQ(record.samples().figures("any").frames, 3);
+  EXPECT_EQ(record.samples().figures("any").samples, 1);
+  ASSERT_EQ(record.samples().path_m.size(), 3u);  // a gap for each frame without a pose
+  EXPECT_FALSE(record.samples().path_m[1].allFinite());
+  EXPECT_TRUE(record.samples().path_m[2].allFinite());
 }
 
 TEST(MethodRecord, CountsHowOftenTheStatedEllipsoidHoldsTheTip) {
-  MethodRecord record("any", small_tool(), {0, 0, {}});
-  record.begin_run();
+  MethodRecord record(small_tool(), {0, 0, {}});
   for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), tip_result(k_pose), 1);
   Result<UncertainPose> answer = shifted(k_pose, {0, 0.001, 0});
   record.add_evaluated(frame_with(k_pose), answer, 1);
-  EXPECT_FALSE(record.figures().covered.has_value()) << "it stated none";
+  EXPECT_FALSE(record.samples().figures("any").covered.has_value()) << "it stated none";
   answer.value.covariance = Matrix6::Identity() * 1e-6;
   record.add_evaluated(frame_with(k_pose), answer, 1);
   answer.value.covariance *= 0.1;
   record.add_evaluated(frame_with(k_pose), answer, 1);
-  EXPECT_EQ(record.figures().covered, 0.5);
+  EXPECT_EQ(record.samples().figures("any").covered, 0.5);
 }
 
 TEST(MethodRecord, AlignsEachRunAnew) {
-  MethodRecord record("any", small_tool(), {0, 0, {}});
+  MethodSamples samples;
   for (const double offset : {0.01, -0.02}) {
-    record.begin_run();
+    MethodRecord record(small_tool(), {0, 0, {}});
     const Result<UncertainPose> answer = shifted(k_pose, Vector3(offset, 0, 0));
     for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), answer, 1);
     for (int i = 0; i < 5; ++i) record.add_evaluated(frame_with(k_pose), answer, 1);
+    samples.add_run(record.samples());
   }
-  EXPECT_LT(record.figures().position_mm.summary.mean_abs, 1e-6);
+  EXPECT_EQ(samples.samples, 10);
+  EXPECT_LT(samples.figures("any").position_mm.summary.mean_abs, 1e-6);
 }
 
 ExperimentRun short_run() {

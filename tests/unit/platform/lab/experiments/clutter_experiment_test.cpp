@@ -127,7 +127,7 @@ TEST(ClutterScene, KeepsTheFirstStraysWhenThereAreMore) {
 
 // Tools one standard deviation apart are sometimes swapped in the full run too (README.md).
 TEST(ClutterExperiment, MeetsItsBarsInAQuickRunButForToolsThatAreNearlyEqual) {
-  CaseList list = run_clutter({true, 1, ".", "", {}});
+  CaseList list = run_clutter({true, 1, ".", "", {}, 0, {}});
   const auto nearly_equal = [](const ExperimentCase& one) {
     return one.method == "glint" && one.name.starts_with("just accepted");
   };

@@ -78,7 +78,7 @@ TEST(PredictionRun, JudgesNothingWithinASecondOfAGap) {
 }
 
 TEST(MotionExperiments, MeetTheirBarsInAQuickRun) {
-  const CaseOptions options{true, 1, ".", "", {}};
+  const CaseOptions options{true, 1, ".", "", {}, 0, {}};
   for (const CaseList& list : {run_lag(options), run_sine(options)}) {
     EXPECT_FALSE(list.cases.empty());
     EXPECT_EQ(missed_bars(list), 0) << case_table(list);
@@ -86,7 +86,7 @@ TEST(MotionExperiments, MeetTheirBarsInAQuickRun) {
 }
 
 TEST(MotionExperiments, GiveTheSameFiguresAgain) {
-  const CaseOptions options{true, 5, ".", "", {}};
+  const CaseOptions options{true, 5, ".", "", {}, 0, {}};
   EXPECT_EQ(case_table(run_static_tool(options)), case_table(run_static_tool(options)));
 }
 

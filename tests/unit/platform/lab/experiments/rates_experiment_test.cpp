@@ -68,7 +68,7 @@ TEST(RatesSchedule, MovesExposuresWithTheirStamps) {
 }
 
 TEST(RatesExperiment, TracksThroughEveryMishapInAQuickRun) {
-  const CaseList list = run_rates({true, 1, ".", "", {}});
+  const CaseList list = run_rates({true, 1, ".", "", {}, 0, {}});
   EXPECT_EQ(missed_bars(list), 0) << case_table(list);
   // Checks that frames were refused at all.
   for (const ExperimentCase& one : list.cases) {
