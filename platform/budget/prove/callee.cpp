@@ -17,8 +17,8 @@ struct LibraryFunction {
   bool returns = true;
 };
 
-// Declared, neither computed nor measured: a system's library is replaced without a new build of this
-// program. A proof lists those that it uses.
+// Declared, neither computed nor measured: a system's library is replaced without a new build of
+// this program. A proof lists those that it uses.
 constexpr std::array k_library = {
     LibraryFunction{"memcpy", 120, 16},
     LibraryFunction{"memmove", 120, 16},

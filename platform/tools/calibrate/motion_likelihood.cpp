@@ -43,10 +43,14 @@ class SensitiveFilter {
     if (!is_rotation()) state_.value.mean.head<3>() = pose.translation;
     const double speed =
         is_rotation() ? settings_.start.start_angular_speed_rad_s : settings_.start.start_speed_m_s;
-    // Stationary variance of a damped acceleration, as in initial_motion_state().
-    const double acceleration = unknowns_.noise / (2 * unknowns_.damping);
+    // As in initial_motion_state(): a rotation's has the stationary variance of a damped one.
+    const double acceleration =
+        is_rotation()
+            ? unknowns_.noise / (2 * unknowns_.damping)
+            : initial_motion_state({}, settings_.start).covariance(k_acceleration, k_acceleration);
     state_.value.covariance.diagonal() << Vector3::Constant(variance_),
         Vector3::Constant(speed * speed), Vector3::Constant(acceleration);
+    if (!is_rotation()) return;
     state_.by[0].covariance.diagonal().tail<3>().setConstant(acceleration);
     state_.by[1].covariance.diagonal().tail<3>().setConstant(-acceleration);
   }
