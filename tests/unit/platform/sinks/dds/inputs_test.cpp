@@ -120,7 +120,8 @@ TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
   int undone = 0;
   for (const ButtonEvent& event : ends.events) {
     EXPECT_GE(event.time, before);
-    EXPECT_LE(event.time, Time{dds_time()} - k_clock_start);
+    // The arrival is of another clock, which may be ahead by its adjustment.
+    EXPECT_LE(event.time, Time{dds_time()} - k_clock_start + milliseconds(1));
     if (event.button == Button::draw) states.push_back(event.pressed);
     undone += event.button == Button::undo ? 1 : 0;
   }
