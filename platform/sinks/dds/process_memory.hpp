@@ -14,7 +14,7 @@
 
 namespace glint {
 
-inline constexpr std::size_t k_endpoints_max = 128;  // 16 tools have 83
+inline constexpr std::size_t k_endpoints_max = 128;  // 16 tools have 76
 inline constexpr int k_memory_descriptor = 3;        // of the DDS process
 
 // A RecordKind::create's contents.

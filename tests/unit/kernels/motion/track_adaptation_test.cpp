@@ -133,8 +133,14 @@ TEST(TrackAdaptation, PropagatesWithItsFactorsAndCorrects) {
     ASSERT_EQ(track.update(measured), Reason::none);
     if (frame == 0) continue;
     propagate(expected, time, track.settings.motion, before);
-    manoeuvres += admit_manoeuvre(measured, expected).squaredNorm() > k_manoeuvre_nis ? 1 : 0;
+    const bool manoeuvre = admit_manoeuvre(measured, expected).squaredNorm() > k_manoeuvre_nis;
+    manoeuvres += manoeuvre ? 1 : 0;
     (void)correct_by_pose(expected, measured);
+    if (!manoeuvre) {
+      EXPECT_EQ(track.estimate().covariance, expected.covariance);
+      EXPECT_EQ(track.estimate().velocity_m_s, expected.velocity_m_s);
+      EXPECT_EQ(track.at.place(), expected.pose.translation);
+    }
     EXPECT_LT((track.estimate().covariance - expected.covariance).norm(),
               1e-9 * expected.covariance.norm());
     EXPECT_LT((track.estimate().velocity_m_s - expected.velocity_m_s).norm(), 1e-9);
