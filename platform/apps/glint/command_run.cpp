@@ -23,6 +23,7 @@
 #include "platform/apps/glint/run_commands.hpp"
 #include "platform/apps/glint/run_output.hpp"
 #include "platform/apps/glint/run_report.hpp"
+#include "platform/apps/glint/run_summary.hpp"
 #include "platform/apps/glint/shard_option.hpp"
 #include "platform/apps/glint/track_folder.hpp"
 #include "platform/apps/glint/view_option.hpp"

@@ -1,17 +1,13 @@
-// Reports of a run: a table, summary.json with the same figures, plots.
+// Reports of a run: the table of its summary, and plots.
 #pragma once
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "platform/cells/cell.hpp"
 #include "platform/runtime/session/session.hpp"
 
 namespace glint {
-
-[[nodiscard]] nlohmann::ordered_json summary_of(const Cell& cell, const RunSchedule& plan,
-                                                const SessionResult& result);
 
 void print_table(const nlohmann::ordered_json& summary, const SessionResult& result);
 
