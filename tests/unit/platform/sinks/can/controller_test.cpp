@@ -1,90 +1,20 @@
-// The controller's C decoder, judged by the encoder of kernels/wire and by what a channel did.
-#include "platform/sinks/can/controller/glint_controller.h"
-
+// The controller's C decoder, judged by the encoder of kernels/wire.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <deque>
-#include <numbers>
 #include <random>
 #include <vector>
 
-#include "kernels/wire/can_frames.hpp"
-#include "kernels/wire/e2e.hpp"
 #include "kernels/wire/node_frames.hpp"
 #include "tests/unit/kernels/wire/samples.hpp"
-#include "tests/unit/repetitions.hpp"
+#include "tests/unit/platform/sinks/can/controller_receiver.hpp"
 
 namespace glint::controller_test {
 namespace {
 
-constexpr std::uint64_t k_cycle_us = 4000;
 constexpr double k_half = 0.5 + 1e-6;
 
-glint_settings settings_of(CanFormat format) {
-  return {.base = k_can_base_default,
-          .fd = format == CanFormat::fd,
-          .cycle_us = k_cycle_us,
-          .speed_max = 2000,
-          .age_max = 1000,
-          .measured_max = 100'000,
-          .heartbeat = 0x720};
-}
-
-std::vector<CanFrame> frames_of(const PoseSample& sample, CanFormat format) {
-  CanFrames frames;
-  add_pose_frames(sample, {format, k_can_base_default}, frames);
-  return {frames.frames().begin(), frames.frames().end()};
-}
-
-glint_frame c_frame(const CanFrame& frame) {
-  return {frame.identifier, frame.fd, frame.length, frame.data.data()};
-}
-
-// A pen on a circle of 100 mm, one turn in 4 s, measured 8 ms before the tick.
-PoseSample circle(std::uint64_t tick) {
-  const double angle = 2 * std::numbers::pi * static_cast<double>(tick) / 1000;
-  PoseSample sample;
-  sample.tick_number = tick;
-  sample.tick = {static_cast<std::int64_t>(tick) * 4'000'000};
-  sample.measurement = sample.tick - microseconds(8000);
-  sample.state = TrackState::measured;
-  sample.pose.translation = {0.1 * std::cos(angle), 0.1 * std::sin(angle), 0.5};
-  sample.sigma_position_m = 1e-3;
-  sample.sigma_orientation_rad = 1e-3;
-  return sample;
-}
-
-class Receiver {
- public:
-  explicit Receiver(CanFormat format) : format_(format) {
-    const glint_settings settings = settings_of(format);
-    glint_init(&controller, &settings);
-  }
-  glint_verdict send(const PoseSample& sample, std::uint64_t now_us) {
-    glint_verdict verdict = GLINT_IGNORED;
-    for (const CanFrame& frame : frames_of(sample, format_)) verdict = send(frame, now_us);
-    return verdict;
-  }
-  glint_verdict send(const CanFrame& frame, std::uint64_t now_us) {
-    const glint_frame received = c_frame(frame);
-    return glint_receive(&controller, &received, now_us);
-  }
-  // Sends ticks [0, ticks), and enables: the next tick's time is ticks * k_cycle_us.
-  void start(std::uint64_t ticks) {
-    for (std::uint64_t tick = 0; tick < ticks; ++tick) send(circle(tick), tick * k_cycle_us);
-    ASSERT_TRUE(glint_enable(&controller, (ticks - 1) * k_cycle_us));
-  }
-  glint_controller controller{};
-
- private:
-  CanFormat format_;
-};
-
-class ControllerOf : public testing::TestWithParam<CanFormat> {};
 INSTANTIATE_TEST_SUITE_P(Formats, ControllerOf, testing::Values(CanFormat::classic, CanFormat::fd),
                          [](const auto& format) {
                            return format.param == CanFormat::fd ? "Fd" : "Classic";
@@ -257,161 +187,6 @@ TEST_P(ControllerOf, AcceptsNoSetThatAGatewayDeliversLate) {
     EXPECT_NE(r.send(circle(tick), now), GLINT_ACCEPTED);
   EXPECT_EQ(r.send(circle(50), now), GLINT_ACCEPTED);
   EXPECT_EQ(r.send(circle(53), now), GLINT_JUMPED) << "three sets in no time";
-}
-
-// Share of the patterns of `flips` flipped bits in a frame that its checksum does not detect, by
-// enumeration: the checksum is linear, so a pattern is undetected if its bits' syndromes add to 0.
-double undetected_share(CanFormat format, int flips) {
-  CanFrame frame = frames_of(circle(7), format).front();
-  const int bits = 8 * frame.length;
-  std::vector<std::uint32_t> syndromes;
-  const auto check = [&](const CanFrame& f) {  // of the encoder: protects, and compares
-    CanFrame again = f;
-    if (f.fd)
-      protect_p05({again.data.data(), again.length}, 0x1A8, f.data[2]);
-    else
-      protect_p01({again.data.data(), again.length}, 0x1A0, P01Mode::both, f.data[1] & 0xFU);
-    return static_cast<std::uint32_t>((again.data[0] ^ f.data[0]) |
-                                      (f.fd ? (again.data[1] ^ f.data[1]) << 8 : 0));
-  };
-  for (int bit = 0; bit < bits; ++bit) {
-    CanFrame flipped = frame;
-    flipped.data[static_cast<std::size_t>(bit / 8)] ^= static_cast<std::uint8_t>(1U << bit % 8);
-    syndromes.push_back(check(flipped));
-  }
-  // Number of sets of `k` bits with each sum, bit by bit.
-  const std::size_t sums = format == CanFormat::fd ? 65536 : 256;
-  std::vector<std::vector<double>> count(static_cast<std::size_t>(flips) + 1,
-                                         std::vector<double>(sums));
-  count[0][0] = 1;
-  double patterns = 1;
-  for (const std::uint32_t syndrome : syndromes) {
-    for (std::size_t k = static_cast<std::size_t>(flips); k > 0; --k)
-      for (std::size_t sum = 0; sum < sums; ++sum) count[k][sum] += count[k - 1][sum ^ syndrome];
-  }
-  for (int k = 0; k < flips; ++k) patterns *= static_cast<double>(bits - k) / (k + 1);
-  return count[static_cast<std::size_t>(flips)][0] / patterns;
-}
-
-// Flips different bits.
-void flip(CanFrame& frame, int flips, std::mt19937& random) {
-  std::vector<int> bits(static_cast<std::size_t>(8 * frame.length));
-  for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = static_cast<int>(i);
-  for (int i = 0; i < flips; ++i) {
-    std::uniform_int_distribution<std::size_t> pick(static_cast<std::size_t>(i), bits.size() - 1);
-    std::swap(bits[static_cast<std::size_t>(i)], bits[pick(random)]);
-    const int bit = bits[static_cast<std::size_t>(i)];
-    frame.data[static_cast<std::size_t>(bit / 8)] ^= static_cast<std::uint8_t>(1U << bit % 8);
-  }
-}
-
-TEST_P(ControllerOf, AcceptsFlippedBitsNoMoreOftenThanTheChecksumsEnumeration) {
-  std::mt19937 random(20);
-  for (const int flips : {1, 2, 3, 4, 5, 6}) {
-    const double share = undetected_share(GetParam(), flips);
-    const int frames_sent = test::repetitions(50'000, 5'000);
-    int undetected = 0;
-    for (int i = 0; i < frames_sent; ++i) {
-      std::vector<CanFrame> frames = frames_of(circle(random() % 100'000), GetParam());
-      CanFrame& frame = frames[random() % frames.size()];
-      flip(frame, flips, random);
-      glint_set set{};
-      const glint_frame received = c_frame(frame);
-      // A counter of 15 is refused beyond the checksum.
-      undetected +=
-          glint_decode(&received, frame.identifier - k_can_base_default, &set) == GLINT_PARTIAL;
-    }
-    std::printf("%s, %d flipped bits: %d of %d undetected; enumeration %.3g\n",
-                GetParam() == CanFormat::fd ? "P05" : "P01", flips, undetected, frames_sent,
-                share * frames_sent);
-    if (flips <= (GetParam() == CanFormat::fd ? 3 : 2)) {
-      EXPECT_EQ(undetected, 0);
-    }
-    EXPECT_LE(undetected, share * frames_sent + 4 * std::sqrt(share * frames_sent + 1));
-  }
-}
-
-// What a channel does to one set, 1 % each.
-enum class Fault { none, drop, repeat, reorder, delay, freeze, flip };
-
-TEST_P(ControllerOf, AcceptsEachSetOnceAndNoOlderOneAmongSixKindsOfFaults) {
-  constexpr std::uint64_t k_sets = 100'000;
-  const std::uint64_t counters = GetParam() == CanFormat::fd ? 256 : 15;
-  Receiver r(GetParam());
-  std::mt19937 random(91);
-  std::deque<std::pair<std::uint64_t, std::uint64_t>> delayed;  // due tick, sent tick
-  std::array<int, 7> faults{};
-  std::uint64_t newest = 0, frozen_until = 0, frozen = 0;
-  int accepted = 0, older = 0, wrapped = 0, stops = 0;
-  const auto note = [&](glint_verdict verdict, std::uint64_t sent, std::uint64_t arrived) {
-    if (verdict != GLINT_ACCEPTED) return;
-    ++accepted;
-    const Vector3 truth = circle(sent).pose.translation;
-    for (int axis = 0; axis < 3; ++axis)
-      ASSERT_NEAR(r.controller.accepted.position_um[axis] * 1e-6, truth[axis], 26e-6);
-    // After a delay of almost one turn, the counter of profile 1 is that of the next set:
-    // README.md.
-    if (arrived - sent >= counters - 3) {
-      ++wrapped;
-      return;
-    }
-    older += sent <= newest && newest != 0;
-    newest = std::max(newest, sent);
-  };
-  for (std::uint64_t tick = 1; tick < k_sets; ++tick) {
-    const std::uint64_t now = tick * k_cycle_us;
-    const unsigned draw = random() % 100;
-    Fault fault = draw < 6 ? static_cast<Fault>(draw + 1) : Fault::none;
-    if (tick < frozen_until) fault = Fault::freeze;
-    ++faults[static_cast<std::size_t>(fault)];
-    std::vector<CanFrame> frames = frames_of(circle(tick), GetParam());
-    switch (fault) {
-      case Fault::none:
-      case Fault::drop:
-        if (fault == Fault::drop) frames.erase(frames.begin() + random() % frames.size());
-        break;
-      case Fault::repeat:
-        note(r.send(circle(tick - 1), now), tick - 1, tick);
-        break;
-      case Fault::reorder:
-        std::ranges::shuffle(frames, random);
-        break;
-      case Fault::delay:
-        delayed.emplace_back(tick + 1 + random() % 20, tick);
-        continue;
-      case Fault::freeze:
-        if (tick >= frozen_until) {
-          frozen = tick - 1;
-          frozen_until = tick + 1 + random() % 20;
-        }
-        note(r.send(circle(frozen), now), frozen, frozen);
-        continue;
-      case Fault::flip:
-        flip(frames[random() % frames.size()], 1 + static_cast<int>(random() % 2), random);
-        break;
-    }
-    for (const CanFrame& frame : frames) note(r.send(frame, now), tick, tick);
-    std::erase_if(delayed, [&](const auto& late) {
-      if (late.first > tick) return false;
-      const std::uint64_t phase = random() % k_cycle_us;
-      note(r.send(circle(late.second), now + phase), late.second, tick);
-      return true;
-    });
-    if (glint_cycle(&r.controller, now) == GLINT_STOP) {
-      ++stops;
-      (void)glint_enable(&r.controller, now);
-    }
-  }
-  std::printf(
-      "%s: %d of %d sets without a fault, %d accepted, %d older, %d delayed by a counter's turn, "
-      "%d cycles stopped\n",
-      GetParam() == CanFormat::fd ? "P05" : "P01", faults[0], static_cast<int>(k_sets), accepted,
-      older, wrapped, stops);
-  EXPECT_EQ(older, 0);
-  EXPECT_GT(accepted, 0.9 * faults[0]) << "correct sets are used";
-  EXPECT_LE(accepted, static_cast<int>(k_sets));
-  EXPECT_LE(wrapped, 0.001 * static_cast<double>(k_sets));
-  for (const int count : faults) EXPECT_GT(count, 500);
 }
 
 }  // namespace
