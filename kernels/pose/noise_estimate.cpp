@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernels/pose/normal_equations.hpp"
 
@@ -26,12 +25,12 @@ double leverage_of(const PoseFactor& factor, const Vector3& gradient, const Vect
 // Weighted sum of the residuals of one kind: ranges or pixels.
 class Kind {
  public:
-  // least: the smallest variance of all markers; declared: the part common to all.
-  Kind(double least, double declared) : least_(least), declared_(declared) {}
+  // declared: the part of the variance that is common to all markers.
+  explicit Kind(double declared) : declared_(declared) {}
 
   // sigmas: the residual divided by its standard deviation.
   void add(double sigmas, double leverage, double variance) {
-    const double weight = (least_ / variance) * (least_ / variance), free = 1 - leverage;
+    const double share = declared_ / variance, weight = share * share, free = 1 - leverage;
     const double own = std::max(variance - declared_, 0.0);
     const double square = std::min(sigmas * sigmas, k_clip_square * free) * variance;
     sum_.squares += weight * (square - free * own);
@@ -40,7 +39,7 @@ class Kind {
   [[nodiscard]] const ResidualSum& sum() const { return sum_; }
 
  private:
-  double least_, declared_;
+  double declared_;
   ResidualSum sum_;
 };
 
@@ -85,13 +84,8 @@ MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
   if (markers.empty() || !add_markers(markers, T_camera_tool, mean_m, normal)) return {};
   const Result<PoseFactor> factor = pose_factor(normal.matrix);
   if (!factor) return {};
-  double least_m2 = std::numeric_limits<double>::infinity(), least_px2 = least_m2;
-  for (const MarkerVariance& variance : variances) {
-    least_m2 = std::min(least_m2, variance.range_m2);
-    least_px2 = std::min({least_px2, variance.xx_px2, variance.yy_px2});
-  }
-  Kind range(least_m2, variance_of(noise.range_sigma_m));
-  Kind pixel(least_px2, variance_of(noise.pixel_sigma_px));
+  Kind range(variance_of(noise.range_sigma_m));
+  Kind pixel(variance_of(noise.pixel_sigma_px));
   for (std::size_t i = 0; i < markers.size(); ++i) {
     const WeightedMarker& marker = markers[i];
     const Vector3 lever = T_camera_tool.rotation * (marker.model_m - mean_m);

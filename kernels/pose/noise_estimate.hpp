@@ -4,9 +4,10 @@
 // What:     a residual v of variance t and leverage h has the expectation E v^2 = (1 - h) t. t is
 //           the marker's own variance plus the one declared for all (marker_sight.hpp). So the
 //           latter is sum w (v^2 - (1 - h) own) / sum w (1 - h), for ranges and for pixels
-//           separately, with w = (least t / t)^2. The weight of old residuals decays: about the
-//           newest k_noise_memory degrees of freedom count. A residual beyond three sigma is
-//           clipped to three.
+//           separately, with w = (declared part of t / t)^2, since the variance of v^2 grows with
+//           t^2: markers whose own variance is large, and perhaps overstated, count little. The
+//           weight of old residuals decays: about the newest k_noise_memory degrees of freedom
+//           count. A residual beyond three sigma is clipped to three.
 // Cost:     for each fit the normal equations once more and their factor; three forward
 //           substitutions per marker.
 // Worst:    data independent for a given number of markers.

@@ -50,11 +50,6 @@ MarkerResiduals plain_residuals(const std::vector<WeightedMarker>& markers,
   }
   const Eigen::MatrixXd transposed = jacobian.transpose();
   const Eigen::MatrixXd hat = jacobian * solve_symmetric(transposed * jacobian, transposed);
-  double least_m2 = 1e9, least_px2 = 1e9;
-  for (const MarkerVariance& variance : variances) {
-    least_m2 = std::min(least_m2, variance.range_m2);
-    least_px2 = std::min({least_px2, variance.xx_px2, variance.yy_px2});
-  }
   MarkerResiduals out;
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -63,9 +58,9 @@ MarkerResiduals plain_residuals(const std::vector<WeightedMarker>& markers,
     for (int kind = 0; kind < 3; ++kind) {
       const bool range = kind == 2;
       const double free = 1 - hat(3 * i + kind, 3 * i + kind);
-      const double weight = std::pow((range ? least_m2 : least_px2) / own[kind], 2);
       const double declared =
           range ? std::pow(noise.range_sigma_m, 2) : std::pow(noise.pixel_sigma_px, 2);
+      const double weight = std::pow(declared / own[kind], 2);
       const double square = std::min(sigmas(kind) * sigmas(kind), 9 * free) * own[kind];
       ResidualSum& sum = range ? out.range : out.pixel;
       sum.squares += weight * (square - free * std::max(own[kind] - declared, 0.0));
