@@ -1,5 +1,6 @@
 #include "nodes/follow_motion.hpp"
 
+#include "kernels/pose/choose_hypothesis.hpp"
 #include "kernels/pose/lever_arm.hpp"
 
 namespace glint {
@@ -31,6 +32,12 @@ bool is_precise(const MotionCovariance& covariance, const PrecisionLimits& preci
                        precision_limits.position_m) &&
          sigmas_within(covariance.block<3, 3>(k_rotation, k_rotation),
                        precision_limits.rotation_rad);
+}
+
+// The markers' own pose is not near the one that agrees with the motion: they allow both.
+bool is_in_another_minimum(const FittedTool& found, const Tool& tool) {
+  return found.has_relinearised &&
+         are_apart(found.T_camera_tool, found.relinearised_T_camera_tool, tool.tip_m);
 }
 
 }  // namespace
@@ -133,6 +140,7 @@ void FollowMotion::operator()(
     tool.noise = tool.motion.noise_scale();
     tool.ambiguous = found.ambiguous();
     tool.use_filter_pose =
+        is_in_another_minimum(found, set.items[t]) ||
         !sigmas_within(found.covariance.bottomRightCorner<3, 3>(), precision_limits.rotation_rad);
     tool.is_publishable = !tool.ambiguous && is_precise(tool.estimate.covariance, precision_limits);
   }

@@ -155,7 +155,8 @@ struct TrackedTool {
   std::uint8_t partial_mask = 0;  // the one or two markers that updated it without a pose; 0: none
   bool is_publishable = false;    // the pose is precise enough to be published as measured
   bool ambiguous = false;         // an alternative is nearly as likely
-  bool use_filter_pose = false;   // publish the filter's pose: the markers alone are too imprecise
+  // Publish the filter's pose: the markers alone are too imprecise, or in doubt between minima.
+  bool use_filter_pose = false;
   bool in_use = false;            // otherwise default-constructed
 };
 // One partition: tool t has index t / k_tool_partitions.

@@ -143,6 +143,19 @@ TEST_F(FollowFields, AreTheFiltersWhereTheMarkersAloneLeaveATurnOpen) {
   }
 }
 
+// The markers' own pose and the one near the prediction are two minima of one fit.
+TEST_F(FollowFields, AreTheFiltersWhereTheMarkersAloneFitAnotherPose) {
+  fit(1).covariance = fit(1).relinearised_covariance = Matrix6::Identity() * 1e-8;
+  fit(1).relinearised_T_camera_tool = fit(1).T_camera_tool;
+  fit(1).has_relinearised = true;
+  EXPECT_FALSE(frame(22).use_filter_pose);
+  const Quaternion turn = from_rotation_vector(Vector3(0.2, 0, 0));
+  fit(1).T_camera_tool.rotation = turn * fit(1).T_camera_tool.rotation;
+  EXPECT_TRUE(frame(44).use_filter_pose);
+  fit(1).has_relinearised = false;
+  EXPECT_FALSE(frame(66).use_filter_pose);
+}
+
 // One visible marker of a tracked tool, in its base frame.
 class FollowFew : public FollowFields {
  protected:

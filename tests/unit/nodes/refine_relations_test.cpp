@@ -83,6 +83,23 @@ TEST_F(RefineRelations, ResidualsBeyondTheNoiseWidenThePoseBySquares) {
   EXPECT_EQ(run_one().reason, Reason::bad_fit) << "beyond four times the noise";
 }
 
+// The noise is larger by the factor of the covariance. A tracked motion is evidence of its own.
+TEST_F(RefineRelations, ResidualsBeyondTheNoiseTakeOddsUntilAMotionIsFollowed) {
+  Random random(14);
+  const Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  add_tool(0, tool, truth, 0, random);
+  const FittedTool exact = run_one();
+  EXPECT_EQ(exact.odds, k_odds_max);
+  add_range_errors(tool, 1);
+  const FittedTool wide = run_one();
+  EXPECT_NEAR(wide.odds, k_odds_max * exact.covariance.trace() / wide.covariance.trace(), 0.5);
+  EXPECT_TRUE(wide.ambiguous());
+  set_prediction(tool, truth, world_->predictions.tools[0]);
+  EXPECT_EQ(run_one().reason, Reason::none);
+  EXPECT_EQ(run_one().odds, k_odds_max);
+}
+
 // Until the noise is estimated, its variance may be ten times the declared: a tenth of the
 // evidence.
 TEST_F(RefineRelations, UnknownNoiseTakesOddsByTheFactorOfItsDoubt) {
