@@ -1,8 +1,8 @@
 """Frames in the formats of files and folders that `glint track` reads, written without Glint and
 without a package; mcap_format.py writes bags and reads recordings.
 
-A frame is a Frame: stamp in ns, planes of uint16 (array.array), and the camera's pose in the world
-as (position, quaternion x y z w), or None. `arrival_ns` follows the stamp by ARRIVAL_NS.
+A frame is a Frame: stamp in ns, planes of uint16 (array.array or numpy's), and the camera's pose in
+the world as (position, quaternion x y z w), or None. `arrival_ns` follows the stamp by ARRIVAL_NS.
 """
 import array
 import csv
@@ -107,7 +107,7 @@ def row_vectors(transform):
 # Pictures and arrays.
 
 def pgm(width, height, values):
-    swapped = array.array("H", values)
+    swapped = array.array("H", values.tobytes())
     if sys.byteorder == "little":
         swapped.byteswap()
     return b"P5 %d %d 65535\n" % (width, height) + swapped.tobytes()
