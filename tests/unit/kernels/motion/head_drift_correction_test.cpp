@@ -7,6 +7,7 @@
 #include "kernels/motion/cholesky.hpp"
 #include "kernels/motion/motion_filter.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -128,10 +129,11 @@ TEST(HeadAnchor, HoldsTheWorldOfAHeadsetThatDriftsMoreThanDeclared) {
   HeadNoise wide = declared;
   wide.rest_position_m *= 20;
   wide.rest_angle_rad *= 20;
+  const auto headsets = static_cast<std::uint64_t>(test::repetitions(20, 6));
   for (const bool drifts : {true, false}) {
     double errors = 0, nees = 0;
     int count = 0;
-    for (std::uint64_t random_seed = 1; random_seed <= 20; ++random_seed) {
+    for (std::uint64_t random_seed = 1; random_seed <= headsets; ++random_seed) {
       Headset headset(drifts ? wide : declared, random_seed);
       HeadDriftCorrection anchor;
       for (int frame = 0; frame < 400; ++frame) {

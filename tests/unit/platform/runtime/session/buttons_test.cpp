@@ -14,6 +14,7 @@
 #include "tests/unit/platform/runtime/session/buttons_on_the_bus.hpp"
 #include "tests/unit/platform/runtime/session/short_run.hpp"
 #include "tests/unit/platform/runtime/session/unseen_pen.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -24,7 +25,8 @@ Cell recording_cell() {
   return cell;
 }
 
-constexpr int k_events = 50001;  // a thread; after the last event its button is held
+// Of a thread; after the last event its button is held.
+const int k_events = test::repetitions(50001, 10001);
 
 // Each thread presses and releases its own button alternately.
 void offer_from_three_threads(Sinks& sinks) {
@@ -73,7 +75,7 @@ TEST(ButtonsOfARun, AreHeldAsTheirEventsSayThoughSeveralThreadsSayThem) {
   offer_from_three_threads(sinks);
   ASSERT_TRUE(sinks.held_buttons().sample());
   EXPECT_EQ(sinks.held_buttons().value().held, 7);
-  EXPECT_EQ(sinks.held_buttons().version(), 3u * k_events);
+  EXPECT_EQ(sinks.held_buttons().version(), 3 * static_cast<std::uint64_t>(k_events));
   sinks.close(outcome);
   ASSERT_TRUE(outcome.recording.complete());
   RecordingReader reader(outcome.recording_file);

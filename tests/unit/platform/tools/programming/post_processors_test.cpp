@@ -128,7 +128,7 @@ Vector3 in_base(const test::ReadProgram& program, const Vector3& position_m) {
 TEST(PostProcessors, CircularMovesAreReadBack) {
   test::Random random(31);
   DrawnPath path;
-  const int strokes = test::repetitions(10, 2);
+  const int strokes = test::repetitions(10, 1);
   for (int stroke = 0; stroke < strokes; ++stroke) {
     PathElement element{PathKind::stroke, {}};
     const Pose frame{random.rotation(), random.in_box(1)};

@@ -12,6 +12,7 @@
 #include "platform/tools/programming/strokes_json.hpp"
 #include "tests/unit/beside_test.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
+#include "tests/unit/repetitions.hpp"
 #include "tests/unit/text_of.hpp"
 
 namespace glint {
@@ -96,8 +97,8 @@ void expect_monte_carlo(const std::string& edit) {
     const UncertainPose& point = path[0].points[p];
     const Matrix6 root = point.covariance.llt().matrixL();
     Matrix6 sum = Matrix6::Zero();
-    constexpr int k_samples = 20'000;
-    for (int n = 0; n < k_samples; ++n) {
+    const int samples = test::repetitions(20'000, 4'000);
+    for (int n = 0; n < samples; ++n) {
       Vector6 error;
       for (int i = 0; i < 6; ++i) error[i] = random.normal();
       error = (root * error).eval();
@@ -107,12 +108,13 @@ void expect_monte_carlo(const std::string& edit) {
       pose.rotation = from_rotation_vector(error.tail<3>()) * pose.rotation;
       const DrawnPath moved = edited(other, {edit});
       const Vector6 off = pose_difference(moved[0].points[p].pose, out[0].points[p].pose);
-      sum += off * off.transpose() / k_samples;
+      sum += off * off.transpose() / samples;
     }
     const Matrix6& stated = out[0].points[p].covariance;
+    const double bar = 5 * std::sqrt(2.0 / samples);  // 5 sigma of a sample variance
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j)
-        EXPECT_NEAR(sum(i, j), stated(i, j), 0.05 * std::sqrt(stated(i, i) * stated(j, j)))
+        EXPECT_NEAR(sum(i, j), stated(i, j), bar * std::sqrt(stated(i, i) * stated(j, j)))
             << edit << ' ' << i << ' ' << j;
   }
 }

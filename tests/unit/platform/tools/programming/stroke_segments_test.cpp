@@ -71,7 +71,7 @@ TEST(StrokeSegments, ALineIsOneLineInNoiseOfItsCovariance) {
 }
 
 TEST(StrokeSegments, ACornerIsFoundWhereItIs) {
-  const int strokes = test::repetitions(60, 12);
+  const int strokes = test::repetitions(60, 4);
   int right = 0;
   double worst_m = 0;
   for (int seed = 1; seed <= strokes; ++seed) {
@@ -90,7 +90,8 @@ TEST(StrokeSegments, ACornerIsFoundWhereItIs) {
 }
 
 TEST(StrokeSegments, AnArcHasItsCentreAndRadius) {
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  const auto strokes = static_cast<std::uint64_t>(test::repetitions(40, 8));
+  for (std::uint64_t seed = 1; seed <= strokes; ++seed) {
     const NoisyShape shape(round_shape, 0.05 * 1.5 * std::numbers::pi, 0.0003, 2000 + seed);
     const auto segments = stroke_segments(shape.points, {});
     ASSERT_EQ(kinds_of(segments), "A") << seed;
@@ -113,7 +114,7 @@ TEST(StrokeSegments, AnArcHasItsCentreAndRadius) {
 }
 
 TEST(StrokeSegments, ATangentArcIsBetweenItsLines) {
-  const int strokes = test::repetitions(40, 8);
+  const int strokes = test::repetitions(40, 4);
   int right = 0;
   for (int seed = 1; seed <= strokes; ++seed) {
     const NoisyShape shape(rounded_corner, 0.16 + 0.02 * std::numbers::pi, 0.0002,
