@@ -1,19 +1,20 @@
-// How often g++ repeats `rep stosq` where it clears a structure from its first aligned byte on.
+// How often g++ repeats `rep stosq` or `rep movsq` where it starts at an aligned address inside of
+// a structure.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
-#include "platform/budget/prove/instruction.hpp"
+#include "platform/budget/prove/register_values.hpp"
 
 namespace glint::prove {
 
 // Recognised is, in one block and possibly between other instructions,
-//   lea rdi, [start + 8]; and rdi, -8; mov rcx, start; sub rcx, rdi; add ecx, bytes; shr ecx, 3
-// or the same with a copy of rdi as the start and `add rdi, 8`. There rdi is above start, so the
-// count is at most bytes / 8. Nothing for any other form.
-[[nodiscard]] std::optional<std::int64_t> words_cleared(const std::vector<Instruction>& block,
-                                                        std::size_t repeat);
+//   and rdi, -8; sub start, rdi; lea ecx, [start + bytes]; shr ecx, 3
+// where start and rdi have one origin before. The mask lowers rdi by at most 7. Nothing for any
+// other form.
+[[nodiscard]] std::optional<std::int64_t> words_cleared(const std::vector<Block>& blocks, int block,
+                                                        std::size_t repeat,
+                                                        const RegisterValues& values);
 
 }  // namespace glint::prove

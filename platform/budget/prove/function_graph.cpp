@@ -6,6 +6,9 @@
 
 #include "platform/budget/prove/callee.hpp"
 #include "platform/budget/prove/cleared_words.hpp"
+#include "platform/budget/prove/counted_loops.hpp"
+#include "platform/budget/prove/register_values.hpp"
+#include "platform/budget/prove/shared_cycles.hpp"
 
 namespace glint::prove {
 namespace {
@@ -27,8 +30,11 @@ class Builder {
     }
     if (leaders_.size() > k_blocks_max || !open_.empty()) refuse(graph_.address, "too many blocks");
     split();
-    count_costs();
+    if (!split_shared_cycles(graph_.blocks)) refuse(graph_.address, "cycles with many entries");
+    const RegisterValues values(graph_.blocks);
+    count_costs(values);
     if (graph_.refusals.empty()) find_loops(graph_);
+    for (Loop& loop : graph_.loops) loop.counted = counted_jumps_back(graph_, loop, values);
     return std::move(graph_);
   }
 
@@ -104,50 +110,27 @@ class Builder {
     }
   }
 
-  // Constant that a register has before an instruction: from the last write of it in this block, or
-  // in the blocks that alone lead here.
-  std::optional<std::int64_t> constant_before(std::size_t block, std::size_t instruction,
-                                              RegisterWrite Instruction::*of_register) const {
-    for (std::size_t steps = 0; steps < k_blocks_max; ++steps) {
-      const std::vector<Instruction>& all = graph_.blocks[block].instructions;
-      while (instruction-- > 0) {
-        if (all[instruction].flow == Flow::call) return std::nullopt;  // the callee may write it
-        const RegisterWrite& write = all[instruction].*of_register;
-        if (write.written) return write.constant;
-      }
-      if (block == 0 || only_predecessor_[block] < 0) return std::nullopt;
-      block = static_cast<std::size_t>(only_predecessor_[block]);
-      instruction = graph_.blocks[block].instructions.size();
-    }
-    return std::nullopt;
-  }
-
-  void find_only_predecessors() {
-    constexpr int k_none = -1, k_several = -2;
-    only_predecessor_.assign(graph_.blocks.size(), k_none);
-    for (std::size_t from = 0; from < graph_.blocks.size(); ++from) {
-      for (const int to : graph_.blocks[from].successors) {
-        int& only = only_predecessor_[static_cast<std::size_t>(to)];
-        only = only == k_none ? static_cast<int>(from) : k_several;
-      }
-    }
-  }
-
-  void count_costs() {
-    find_only_predecessors();
+  void count_costs(const RegisterValues& values) {
+    const bool x86 = code_.machine() == Machine::x86_64;
+    const Register count_register = 1, third_argument = 2;  // rcx; rdx and x2
+    const auto constant = [&](Register of, std::size_t number,
+                              std::size_t index) -> std::optional<std::int64_t> {
+      const RegisterValue value = values.before({of, 0, false}, static_cast<int>(number), index);
+      if (value.origin != Origin::none || value.offset < 0) return std::nullopt;
+      return value.offset;
+    };
     for (std::size_t number = 0; number < graph_.blocks.size(); ++number) {
       Block& block = graph_.blocks[number];
       block.cost = static_cast<std::int64_t>(block.instructions.size());
-      for (std::size_t i = 0; i < block.instructions.size(); ++i) {
+      for (std::size_t i = 0; x86 && i < block.instructions.size(); ++i) {
         if (!block.instructions[i].repeats) continue;
-        auto count = constant_before(number, i, &Instruction::repetitions);
-        if (!count) count = words_cleared(block.instructions, i);
-        if (!count || *count < 0) block.uncounted.push_back(block.instructions[i]);
+        auto count = constant(count_register, number, i);
+        if (!count) count = words_cleared(graph_.blocks, static_cast<int>(number), i, values);
+        if (!count) block.uncounted.push_back(block.instructions[i]);
         block.cost += count.value_or(0);
       }
       if (block.library.empty()) continue;
-      block.bytes =
-          constant_before(number, block.instructions.size() - 1, &Instruction::third_argument);
+      block.bytes = constant(third_argument, number, block.instructions.size() - 1);
     }
   }
 
@@ -204,7 +187,6 @@ class Builder {
     const Callee callee = callee_of(code_, decoder_, last);
     if (!callee.library.empty()) {
       block.library = callee.library;
-
     } else if (callee.address) {
       block.callee = callee.address;
     } else if (last.flow == Flow::call || last.slot) {
@@ -216,7 +198,6 @@ class Builder {
   const Decoder& decoder_;
   FunctionGraph graph_;
   std::map<std::uint64_t, Instruction> instructions_;
-  std::vector<int> only_predecessor_;  // negative: none or several
   std::set<std::uint64_t> leaders_;
   std::vector<std::uint64_t> open_;
 };

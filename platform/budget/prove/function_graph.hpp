@@ -32,9 +32,10 @@ struct Block {
 
 struct Loop {
   int header = 0;
-  std::vector<int> blocks;   // the header first
-  std::vector<int> latches;  // sources of the back edges
-  int parent = -1;           // smallest loop around it
+  std::vector<int> blocks;              // the header first
+  std::vector<int> latches;             // sources of the back edges
+  int parent = -1;                      // smallest loop around it
+  std::optional<std::int64_t> counted;  // jumps back of one execution, from the machine code
 };
 
 // What has no model: the address and what was found there.
@@ -52,6 +53,8 @@ struct FunctionGraph {
 
 [[nodiscard]] FunctionGraph function_graph(const ProgramCode& code, const Decoder& decoder,
                                            std::uint64_t address);
+
+[[nodiscard]] std::vector<std::vector<int>> predecessors_of(const std::vector<Block>& blocks);
 
 // Immediate dominator of each block; that of the entry is itself.
 [[nodiscard]] std::vector<int> dominators(const std::vector<Block>& blocks);

@@ -2,60 +2,16 @@
 
 #include <capstone/capstone.h>
 
-#include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <string_view>
+
+#include "platform/budget/prove/register_effects.hpp"
 
 namespace glint::prove {
 namespace {
 
 bool in_group(csh handle, const cs_insn& raw, unsigned group) {
   return cs_insn_group(handle, &raw, group);
-}
-
-// Ids of one register under its names of all widths; unused places are 0, no register.
-using RegisterNames = std::array<unsigned, 5>;
-constexpr RegisterNames k_rcx = {X86_REG_RCX, X86_REG_ECX, X86_REG_CX, X86_REG_CL, X86_REG_CH};
-constexpr RegisterNames k_rdx = {X86_REG_RDX, X86_REG_EDX, X86_REG_DX, X86_REG_DL, X86_REG_DH};
-constexpr RegisterNames k_x2 = {ARM64_REG_X2, ARM64_REG_W2};
-
-bool is_one_of(const RegisterNames& names, unsigned id) {
-  return id != 0 && std::find(names.begin(), names.end(), id) != names.end();
-}
-
-// A write that the instruction only may do counts as one.
-bool writes(csh handle, const cs_insn& raw, const RegisterNames& names) {
-  cs_regs read, written;
-  std::uint8_t reads = 0, count = 0;
-  if (cs_regs_access(handle, &raw, read, &reads, written, &count) != CS_ERR_OK) return true;
-  return std::any_of(written, written + count,
-                     [&](std::uint16_t id) { return is_one_of(names, id); });
-}
-
-RegisterWrite x86_write(csh handle, const cs_insn& raw, const RegisterNames& names) {
-  const cs_x86& x86 = raw.detail->x86;
-  const bool first = x86.op_count > 0 && x86.operands[0].type == X86_OP_REG &&
-                     is_one_of(names, x86.operands[0].reg);
-  const bool only_reads = raw.id == X86_INS_CMP || raw.id == X86_INS_TEST;
-  RegisterWrite write{writes(handle, raw, names) || (first && !only_reads), {}};
-  if (first && raw.id == X86_INS_MOV && x86.operands[0].size >= 4 &&
-      x86.operands[1].type == X86_OP_IMM) {
-    write.constant = x86.operands[1].imm;
-  }
-  return write;
-}
-
-RegisterWrite arm64_write(csh handle, const cs_insn& raw, const RegisterNames& names) {
-  const cs_arm64& arm = raw.detail->arm64;
-  const bool first = arm.op_count > 0 && arm.operands[0].type == ARM64_OP_REG &&
-                     is_one_of(names, arm.operands[0].reg);
-  RegisterWrite write{writes(handle, raw, names) || first, {}};
-  if (first && (raw.id == ARM64_INS_MOV || raw.id == ARM64_INS_MOVZ) && arm.op_count == 2 &&
-      arm.operands[1].type == ARM64_OP_IMM && arm.operands[1].shift.value == 0) {
-    write.constant = arm.operands[1].imm;
-  }
-  return write;
 }
 
 void read_x86(csh handle, const cs_insn& raw, Instruction& instruction) {
@@ -81,13 +37,10 @@ void read_x86(csh handle, const cs_insn& raw, Instruction& instruction) {
   }
   instruction.repeats =
       instruction.flow == Flow::next && std::string_view(raw.mnemonic).starts_with("rep");
-  instruction.repetitions = x86_write(handle, raw, k_rcx);
-  instruction.third_argument = x86_write(handle, raw, k_rdx);
 }
 
 void read_arm64(csh handle, const cs_insn& raw, Instruction& instruction) {
   const cs_arm64& arm = raw.detail->arm64;
-  instruction.third_argument = arm64_write(handle, raw, k_x2);
   if (raw.id == ARM64_INS_RET) {
     instruction.flow = Flow::returns;
   } else if (raw.id == ARM64_INS_BRK || raw.id == ARM64_INS_HLT) {
@@ -145,8 +98,10 @@ std::optional<Instruction> Decoder::at(std::uint64_t address) const {
   instruction.text = std::string(raw.mnemonic) + " " + raw.op_str;
   if (code_.machine() == Machine::x86_64) {
     read_x86(handle_->capstone, raw, instruction);
+    read_x86_effects(handle_->capstone, raw, instruction);
   } else {
     read_arm64(handle_->capstone, raw, instruction);
+    read_arm64_effects(handle_->capstone, raw, instruction);
   }
   // Flow that has no model here: loop, syscall, iret.
   if (instruction.flow == Flow::next &&

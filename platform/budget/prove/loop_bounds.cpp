@@ -61,6 +61,7 @@ LoopEntry loop_entry(const std::string& file, const std::string& source, const s
   entry.text = reader.text("text", "");
   entry.at_most = reader.text("at_most", "");
   entry.also = reader.texts("also");
+  entry.each = reader.boolean("each", false);
   entry.jumps_from = reader.text("jumps_from", "");
   if (const toml::table* totals = reader.table("total"); totals != nullptr) {
     TomlReader of_total(*totals, file, entry.line_text() + ".total.");

@@ -15,7 +15,8 @@
 // A machine loop has an entry if all its instructions come from the lines of the entry or from
 // calls inlined there. A jump back to its start must come from the first line, or from that of
 // `jumps_from`. `also` lists lines outside, whose instructions a compiler moves into the loop. So
-// an entry never serves for a loop that lies inside or outside of its own.
+// an entry never serves for a loop that lies inside or outside of its own. `each = true`: the
+// maximum holds for each of the nested loops of a statement, as those of a matrix expression.
 #pragma once
 
 #include <cstdint>
@@ -35,6 +36,7 @@ struct LoopEntry {
   int first = 0, last = 0;
   std::vector<std::string> also;  // "file:line" outside, moved into the loop by a compiler
   std::string jumps_from;         // another "file:line" that a jump back may come from
+  bool each = false;              // the maximum is that of each of its nested loops
   std::string text;               // of the first line, without its indentation
   std::string at_most;            // "": no maximum of one execution
   std::map<std::string, std::string> total;  // by kernel

@@ -29,7 +29,9 @@ std::vector<int> reverse_postorder(const std::vector<Block>& blocks) {
   return order;
 }
 
-std::vector<std::vector<int>> predecessors(const std::vector<Block>& blocks) {
+}  // namespace
+
+std::vector<std::vector<int>> predecessors_of(const std::vector<Block>& blocks) {
   std::vector<std::vector<int>> before(blocks.size());
   for (std::size_t from = 0; from < blocks.size(); ++from) {
     for (const int to : blocks[from].successors) {
@@ -39,15 +41,13 @@ std::vector<std::vector<int>> predecessors(const std::vector<Block>& blocks) {
   return before;
 }
 
-}  // namespace
-
 std::vector<int> dominators(const std::vector<Block>& blocks) {
   const std::vector<int> order = reverse_postorder(blocks);
   std::vector<int> rank(blocks.size(), -1), immediate(blocks.size(), -1);
   for (std::size_t i = 0; i < order.size(); ++i) {
     rank[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
   }
-  const auto before = predecessors(blocks);
+  const auto before = predecessors_of(blocks);
   const auto of = [&](int block) -> int& { return immediate[static_cast<std::size_t>(block)]; };
   const auto common = [&](int a, int b) {
     while (a != b) {
@@ -98,7 +98,7 @@ void find_loops(FunctionGraph& graph) {
       }
     }
   }
-  const auto before = predecessors(graph.blocks);
+  const auto before = predecessors_of(graph.blocks);
   for (auto& [header, loop] : by_header) {
     std::vector<bool> inside(graph.blocks.size(), false);
     inside[static_cast<std::size_t>(header)] = true;

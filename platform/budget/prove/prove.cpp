@@ -55,6 +55,11 @@ PathGraph path_graph_of(const ProgramCode& code, const CallGraph& calls) {
   return graph;
 }
 
+bool is_around(const FunctionGraph& function, std::size_t outer, std::size_t inner) {
+  const std::vector<int>& around = function.loops[outer].blocks;
+  return std::find(around.begin(), around.end(), function.loops[inner].header) != around.end();
+}
+
 }  // namespace
 
 Prover::Prover(const std::string& program, const std::string& lines, const LoopBounds& bounds,
@@ -130,7 +135,18 @@ void Prover::add_loops(const CallGraph& calls, const KernelCounts& kernel,
       const Block& header = function.blocks[static_cast<std::size_t>(loop.header)];
       const Block& latch = function.blocks[static_cast<std::size_t>(loop.latches.front())];
       const LoopEntry* entry = matches[i].entry;
-      LoopFinding finding{header.address, "", code_.text_of(header.address), {}};
+      LoopFinding finding{header.address, "", code_.text_of(header.address), loop.counted};
+      bool is_shared = false;  // its entry is that of a loop around it or inside it, too
+      for (std::size_t other = 0; other < function.loops.size(); ++other) {
+        if (other == i || entry == nullptr || matches[other].entry != entry) continue;
+        is_shared = is_shared || is_around(function, other, i) || is_around(function, i, other);
+      }
+      if (loop.counted && (entry == nullptr || is_shared)) {
+        finding.place = place_text(lines_.of(latch.instructions.back().address));
+        proof.graph.loops.push_back({first + loop.header, *loop.counted});
+        proof.loops.push_back(finding);
+        continue;
+      }
       if (entry == nullptr) {
         finding.place = place_text(lines_.of(latch.instructions.back().address));
         const LoopEntry* near = matches[i].near;
@@ -144,20 +160,24 @@ void Prover::add_loops(const CallGraph& calls, const KernelCounts& kernel,
       }
       for (int around = loop.parent; around >= 0;
            around = function.loops[static_cast<std::size_t>(around)].parent) {
-        if (matches[static_cast<std::size_t>(around)].entry != entry) continue;
+        const auto outer = static_cast<std::size_t>(around);
+        if (matches[outer].entry != entry || function.loops[outer].counted || entry->each) continue;
         proof.reasons.push_back("two nested loops of " + entry->line_text() + " at " +
                                 place_of(header.address));
       }
       finding.place = entry->line_text();
+      const auto lower = [&](std::int64_t at_most) {
+        finding.at_most = std::min(finding.at_most.value_or(at_most), at_most);
+      };
       const auto total = entry->total.find(kernel.kernel);
       if (total != entry->total.end()) {
         PathTotal& all = totals[entry];
         all.at_most = value_of(total->second, kernel.worst, entry->place);
         all.headers.push_back(first + loop.header);
-        finding.at_most = all.at_most;
+        lower(all.at_most);
       }
       if (!entry->at_most.empty()) {
-        finding.at_most = value_of(entry->at_most, limits_, entry->place);
+        lower(value_of(entry->at_most, limits_, entry->place));
       } else if (!finding.at_most) {
         proof.reasons.push_back(entry->place + ": no maximum for " + kernel.kernel);
       }

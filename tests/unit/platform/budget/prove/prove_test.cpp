@@ -113,6 +113,22 @@ TEST_F(ProveToy, BoundsALoopByItsDeclaredMaximum) {
 
 TEST_F(ProveToy, AddsEachCall) { expect_tight(proof_of("Calls"), &toy_calls, 16); }
 
+TEST_F(ProveToy, CountsALoopOfConstantsExactly) {
+  const KernelProof proof = proof_of("Counted");
+  expect_tight(proof, &toy_counted, 0);
+  std::vector<std::int64_t> jumps_back;
+  for (const PathLoop& loop : proof.graph.loops) jumps_back.push_back(loop.at_most);
+  std::sort(jumps_back.begin(), jumps_back.end());
+  EXPECT_EQ(jumps_back, (std::vector<std::int64_t>{11, 12}));
+  expect_reason("Uneven", "a loop without a maximum at toy_uneven+0x");
+}
+
+TEST_F(ProveToy, BoundsACycleWithTwoEntries) {
+  const KernelProof proof = proof_of("TwoEntries");
+  expect_tight(proof, &toy_two_entries, 8);
+  EXPECT_EQ(accepted({{proof.graph_text, proof.certificate_text}}), 1);
+}
+
 TEST_F(ProveToy, SharesATotalAmongAllRunsOfALoop) {
   const KernelProof proof = proof_of("Stretches");
   ASSERT_TRUE(proof.proved()) << proof.reasons.front();

@@ -81,3 +81,31 @@ TOY int toy_copy(const int* values, int count) {
   std::memcpy(copy, values, static_cast<std::size_t>(count) * sizeof(int));
   return toy_sum(copy, count);
 }
+
+// Both loops count to constants, so they need no entry.
+TOY int toy_counted(const int* values, int /*count*/) {
+  int sum = 0;
+  for (int i = 0; i < 12; ++i) sum = sum * 3 + values[i] % 5;
+  for (int i = 40; i > 2; i -= 3) sum = sum * 7 + values[i] % 11;
+  return sum;
+}
+
+// A cycle that is entered at its first instruction or at its second one.
+TOY int toy_two_entries(const int* values, int count) {
+  int sum = values[0];
+  asm volatile("test %0, %0; jz 2f; 1: add $3, %0; 2: add $5, %0; dec %1; jg 1b"
+               : "+r"(sum), "+r"(count)
+               :
+               : "cc");
+  return sum;
+}
+
+// The step of the counter depends on the values.
+TOY int toy_uneven(const int* values, int /*count*/) {
+  int sum = 0;
+  for (int i = 0; i < 40;) {
+    sum = sum * 3 + values[i];
+    i += sum > 5 ? 1 : 3;
+  }
+  return sum;
+}

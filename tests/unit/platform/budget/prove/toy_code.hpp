@@ -11,4 +11,6 @@ int toy_recursion(const int* values, int count);
 int toy_indirect_call(const int* values, int count);
 int toy_switch(const int* values, int count);
 int toy_copy(const int* values, int count);
+int toy_counted(const int* values, int count);
+int toy_two_entries(const int* values, int count);
 }
