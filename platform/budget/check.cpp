@@ -1,6 +1,7 @@
 #include "platform/budget/check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "platform/budget/bus_frames.hpp"
@@ -17,6 +18,15 @@ TaskModel what_if_model(const CheckInput& input, const CheckOptions& options,
                         const Limits& limits) {
   TaskModel model = task_model_of(input.cell, input.board.table(), input.board.system, limits);
   model.cores = input.plan.cores;
+  const CheckInput limited{input.cell, input.board, input.plan, limits, input.foreign};
+  for (TaskGroup& group : model.groups) {
+    for (TaskNode& node : group.nodes) {
+      if (estimated_because(limited, options, node.name)) continue;
+      node.bound_ns = static_cast<std::int64_t>(
+          std::ceil(static_cast<double>(options.proved.instructions.at(node.name)) *
+                    input.board.ns_per_instruction));
+    }
+  }
   for (const auto& [kernel, factor] : options.scale) {
     model = scaled(model, factor, [&, &name = kernel](std::size_t g, std::size_t n) {
       return model.groups[g].nodes[n].name == name;
@@ -69,6 +79,18 @@ void add_kernels(CheckResult& result) {
   }
 }
 
+void add_estimated(const CheckInput& input, const CheckOptions& options, CheckResult& result) {
+  for (const KernelSlack& kernel : result.kernels) {
+    const std::optional<std::string> why = estimated_because(input, options, kernel.name);
+    if (!why) continue;
+    result.estimated[kernel.name] = *why;
+    if (options.require_proved) {
+      result.fails.push_back(kernel.name +
+                             ": the bound is estimated, expected a proved one: " + *why);
+    }
+  }
+}
+
 void add_largest(const CheckInput& input, const CheckOptions& options, CheckResult& result) {
   for (int tools = k_tools_max; tools > 0 && result.tools_largest == 0; --tools) {
     Limits limits = input.limits;
@@ -91,6 +113,18 @@ void add_largest(const CheckInput& input, const CheckOptions& options, CheckResu
 }
 
 }  // namespace
+
+std::optional<std::string> estimated_because(const CheckInput& input, const CheckOptions& options,
+                                             const std::string& kernel) {
+  const ProvedBounds& proved = options.proved;
+  if (const auto refused = proved.refused.find(kernel); refused != proved.refused.end()) {
+    return refused->second;
+  }
+  if (!proved.instructions.contains(kernel)) return "no proof";
+  if (input.board.counter != CostCounter::instructions) return "the board counts time";
+  if (!covers(proved.limits, input.limits)) return "the proof is of smaller limits";
+  return std::nullopt;
+}
 
 Plan validated_plan(const std::string& file, TaskModel& model, const Limits& limits) {
   Plan plan = load_plan(file, model, graphs_signature(model));
@@ -141,6 +175,7 @@ CheckResult check(const CheckInput& input, const CheckOptions& options) {
   }
 
   add_kernels(result);
+  add_estimated(input, options, result);
   const auto everything = [](std::size_t, std::size_t) { return true; };
   for (std::size_t g = 0; g < result.analysis_input.model.groups.size(); ++g) {
     result.groups.push_back(largest_factor(

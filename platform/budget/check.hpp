@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "platform/budget/board_file.hpp"
+#include "platform/budget/proved_bounds.hpp"
 #include "platform/cells/cell.hpp"
 #include "schedules/assessment.hpp"
 
@@ -20,6 +21,8 @@ struct CheckOptions {
   double margin_percent = 0;            // policy: minimum slack of the whole system
   std::string foreign;                  // file of other nodes' frames; empty: none
   std::string observed;                 // summary.json of a run; empty: none
+  ProvedBounds proved;                  // of the program that runs; they replace the board's
+  bool require_proved = false;          // an estimated bound is a failure
 };
 
 // Input of check(), which throws InputError for a scale of an unknown kernel. validated_plan()
@@ -40,6 +43,12 @@ struct CheckInput {
 // The question with the options applied.
 [[nodiscard]] AnalysisInput analysis_input_of(const CheckInput& input, const CheckOptions& options);
 
+// Why a kernel's bound is estimated: it is the board's envelope of measured calls. Nothing if it is
+// proved.
+[[nodiscard]] std::optional<std::string> estimated_because(const CheckInput& input,
+                                                           const CheckOptions& options,
+                                                           const std::string& kernel);
+
 struct KernelSlack {
   std::size_t group = 0;
   std::string name;
@@ -57,8 +66,9 @@ struct CheckResult {
   int tools_largest = 0;                      // that still fit; 0: not even one
   long long roi_pixels_largest = 0;           // searched pixels that still fit
   double bus_load = 0;
-  std::vector<std::string> what_if;  // options for which the result is hypothetical
-  std::vector<std::string> fails;    // violated deadlines, bounds or policy
+  std::map<std::string, std::string> estimated;  // by kernel: why its bound is not proved
+  std::vector<std::string> what_if;              // options for which the result is hypothetical
+  std::vector<std::string> fails;                // violated deadlines, bounds or policy
 };
 
 [[nodiscard]] CheckResult check(const CheckInput& input, const CheckOptions& options);

@@ -29,6 +29,10 @@ const KernelSlack* slack_of(const CheckResult& result, std::size_t group, const 
   return nullptr;
 }
 
+const char* kind_of(const CheckResult& result, const std::string& kernel) {
+  return result.estimated.contains(kernel) ? "estimated" : "proved";
+}
+
 ordered_json groups_json(const CheckResult& result) {
   ordered_json groups = ordered_json::array();
   for (std::size_t g = 0; g < result.assessment.groups.size(); ++g) {
@@ -58,6 +62,7 @@ ordered_json nodes_json(const CheckResult& result) {
                        {"core", times.core.empty() ? -1 : times.core[n]},
                        {"start_us", times.core.empty() ? 0 : us(times.start_ns[n])},
                        {"bound_us", us(group.nodes[n].bound_ns)},
+                       {"kind", kind_of(result, group.nodes[n].name)},
                        {"slack_percent", percent_or_null(slack->one_copy)},
                        {"may_grow_percent", percent_or_null(slack->all_copies)}});
     }
@@ -139,6 +144,7 @@ ordered_json check_json(const CheckInput& input, const CheckOptions& options,
         {"markers_per_tool", limits.markers_per_tool},
         {"blobs", limits.blobs}}},
       {"void", invalid_reasons(input, result)},
+      {"estimated", result.estimated},
       {"groups", groups_json(result)},
       {"nodes", nodes_json(result)},
       {"chains", chains_json(result)},
@@ -187,6 +193,12 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
                  us(chain.jitter_ns));
   }
   text += "\n                                  bound us   may grow %\n" + node_slack_rows(result);
+  text += "\n";
+  for (const KernelSlack& kernel : result.kernels) {
+    const auto why = result.estimated.find(kernel.name);
+    text += line("%-9s %-24.60s%s\n", kind_of(result, kernel.name), kernel.name.c_str(),
+                 why == result.estimated.end() ? "" : (" " + why->second).c_str());
+  }
   std::size_t slowest = 0;
   for (std::size_t f = 1; f < result.analysis_input.frames.size(); ++f) {
     if (result.analysis_input.frames[f].deadline_ns ==

@@ -35,6 +35,34 @@ struct Fixture {
   std::vector<CanMessage> foreign;
 };
 
+TEST(Check, RequireProvedNamesEachEstimatedBound) {
+  const Fixture fixture;
+  const CheckInput input = fixture.input();
+  CheckOptions options;
+  options.proved.limits = Limits{};
+  for (const KernelSlack& kernel : check(input, {}).kernels) {
+    options.proved.instructions[kernel.name] = 1'000;
+  }
+  options.require_proved = true;
+  const CheckResult proved = check(input, options);
+  EXPECT_TRUE(proved.fails.empty()) << proved.fails.front();
+  const TaskNode& node = proved.analysis_input.model.groups[0].nodes[0];
+  EXPECT_EQ(node.bound_ns, static_cast<std::int64_t>(1'000 * fixture.board.ns_per_instruction));
+  EXPECT_EQ(check_json(input, options, proved)["nodes"][0]["kind"], "proved");
+
+  options.proved.instructions.erase("FindBlobs");
+  options.proved.refused["FindBlobs"] = "the program has other machine code than the proof";
+  const CheckResult estimated = check(input, options);
+  ASSERT_EQ(estimated.fails.size(), 1U);
+  EXPECT_EQ(estimated.fails.front(),
+            "FindBlobs: the bound is estimated, expected a proved one: the program has other "
+            "machine code than the proof");
+  EXPECT_NE(check_table(input, estimated).find("estimated FindBlobs"), std::string::npos);
+
+  options.proved.limits.blobs = 8;
+  EXPECT_EQ(check(input, options).fails.size(), proved.kernels.size());
+}
+
 TEST(Check, HoldsOnAFastBoardAndGivesEveryKeyThatItsReadersNeed) {
   const Fixture fixture;
   const CheckInput input = fixture.input();
