@@ -12,6 +12,7 @@
 #include "platform/budget/bus_frames.hpp"
 #include "platform/budget/check.hpp"
 #include "platform/budget/expected_board.hpp"
+#include "platform/budget/prove/proved_code.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
@@ -21,7 +22,7 @@ namespace glint {
 namespace {
 
 struct CheckArguments {
-  std::string cell, board, plan, json;
+  std::string cell, board, plan, json, proof, program = "/proc/self/exe";
   std::vector<std::string> scale;
   CheckOptions options;
 };
@@ -49,6 +50,10 @@ int run_check(const CheckArguments& arguments) {
   input.plan = validated_plan(arguments.plan, model, input.limits);
   if (!options.foreign.empty()) {
     input.foreign = foreign_frames(options.foreign, own_frames_of(cell, input.limits.tools));
+  }
+
+  if (!arguments.proof.empty()) {
+    options.proved = prove::bounds_of_program(load_proofs(arguments.proof), arguments.program);
   }
 
   const CheckResult result = check(input, options);
@@ -86,10 +91,18 @@ void add_budget_check(CLI::App& budget, int& exit_code) {
       ->capture_default_str();
   command->add_option("--observed", options.observed,
                       "summary.json of a run to compare with the bounds");
+  command->add_option("--proof", arguments->proof,
+                      "bounds of `glint budget prove --json`, in place of the board's");
+  command
+      ->add_option("--program", arguments->program,
+                   "program that runs; a proof holds only for its machine code")
+      ->capture_default_str();
+  command->add_flag("--require-proved", options.require_proved,
+                    "exit 1 if a kernel's bound is not proved for the program");
   command->add_option("--json", arguments->json, "file of the figures");
   command->footer(
-      "Exit code 1: a bound above its deadline, an observation above its bound, or a slack\n"
-      "below --margin.\n"
+      "Exit code 1: a bound above its deadline, an observation above its bound, a slack\n"
+      "below --margin, or with --require-proved an estimated bound.\n"
       "Example: glint budget check --board cortex-a72-emulated --plan plan.toml --clock 0.8");
   command->callback([arguments, &exit_code] { exit_code = run_check(*arguments); });
 }

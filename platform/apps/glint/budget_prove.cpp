@@ -10,6 +10,7 @@
 #include "platform/apps/glint/output_file.hpp"
 #include "platform/budget/prove/kernel_counts.hpp"
 #include "platform/budget/prove/prove.hpp"
+#include "platform/budget/proved_bounds.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 
@@ -26,6 +27,7 @@ nlohmann::ordered_json json_of(const prove::KernelProof& proof) {
   nlohmann::ordered_json json;
   json["kernel"] = proof.kernel;
   json["function"] = proof.function;
+  json["root"] = proof.root;
   json["kind"] = proof.proved() ? "proved" : "not proved";
   json["machine"] = proof.graph.machine;
   json["code_sha256"] = proof.graph.code_sha256;
@@ -87,6 +89,8 @@ int run_prove(const ProveArguments& arguments) {
   std::printf("%s, %s: executed instructions of one activation\n",
               printable(arguments.program).c_str(), name_of(prover.code().machine()).c_str());
   nlohmann::ordered_json json;
+  json["machine"] = name_of(prover.code().machine());
+  json["limits"] = limits_json(limits);
   std::size_t proved = 0, all = 0;
   for (const prove::KernelCounts& kernel : kernels) {
     const auto& wanted = arguments.kernels;

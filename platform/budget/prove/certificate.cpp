@@ -29,11 +29,18 @@ class Potentials {
  public:
   Potentials(const PathGraph& graph, Certificate& certificate)
       : graph_(graph), roles_(roles_of(graph)), certificate_(certificate) {
-    total_of_block_.assign(graph.blocks.size(), 0);
-    for (std::size_t total = 0; total < graph.totals.size(); ++total) {
-      for (const int header : graph.totals[total].headers) {
-        total_of_block_[static_cast<std::size_t>(header)] += certificate.totals[total];
+    total_of_jump_.assign(graph.blocks.size(), 0);
+    total_of_run_ = total_of_entry_ = total_of_jump_;
+    for (std::size_t i = 0; i < graph.totals.size(); ++i) {
+      const PathTotal& total = graph.totals[i];
+      auto& shares = total.of == PathTotal::Of::runs ? total_of_run_ : total_of_jump_;
+      for (const int block : total.blocks) {
+        std::int64_t& share = shares[static_cast<std::size_t>(block)];
+        share = exact_sum(share, certificate.totals[i]);
       }
+      if (total.scope < 0) continue;
+      std::int64_t& paid = total_of_entry_[static_cast<std::size_t>(total.scope)];
+      paid = exact_sum(paid, exact_product(certificate.totals[i], total.at_most));
     }
     leaving_.resize(graph.functions.size());
     for (std::size_t edge = 0; edge < graph.edges.size(); ++edge) {
@@ -68,13 +75,15 @@ class Potentials {
     if (block.callee >= 0) {
       sum = exact_sum(sum, certificate_.functions[static_cast<std::size_t>(block.callee)]);
     }
+    sum = exact_sum(sum, -total_of_run_[index]);
     if (role == EdgeRole::plain) return sum;
     const auto loop = static_cast<std::size_t>(roles_.loop_of_block[index]);
     const std::int64_t multiplier = certificate_.loops[loop];
     if (role == EdgeRole::enters) {
+      sum = exact_sum(sum, total_of_entry_[index]);
       return exact_sum(sum, exact_product(multiplier, graph_.loops[loop].at_most));
     }
-    return exact_sum(sum, -exact_sum(multiplier, total_of_block_[index]));
+    return exact_sum(sum, -exact_sum(multiplier, total_of_jump_[index]));
   }
 
   std::vector<bool> blocks_of_loop(int header) const {
@@ -165,8 +174,8 @@ class Potentials {
   const PathGraph& graph_;
   EdgeRoles roles_;
   Certificate& certificate_;
-  std::vector<std::int64_t> total_of_block_;
-  std::vector<std::vector<std::size_t>> leaving_;  // edges by function
+  std::vector<std::int64_t> total_of_jump_, total_of_run_, total_of_entry_;  // by block
+  std::vector<std::vector<std::size_t>> leaving_;                            // edges by function
 };
 
 }  // namespace
@@ -178,6 +187,7 @@ Certificate certificate_of(const PathGraph& graph, const PathSolution& solution)
   Potentials(graph, certificate).compute();
   certificate.bound = certificate.functions.back();
   for (std::size_t total = 0; total < graph.totals.size(); ++total) {
+    if (graph.totals[total].scope >= 0) continue;
     certificate.bound = exact_sum(
         certificate.bound, exact_product(certificate.totals[total], graph.totals[total].at_most));
   }

@@ -16,19 +16,24 @@ std::size_t last_write(const std::vector<Instruction>& all, std::size_t end, Reg
   return end;
 }
 
+bool is_written_in(const RegisterValue& value, int block) {
+  return value.origin == Origin::written && value.place >> 32 == static_cast<std::uint64_t>(block);
+}
+
 }  // namespace
 
 std::optional<std::int64_t> words_cleared(const std::vector<Block>& blocks, int block,
                                           std::size_t repeat, const RegisterValues& values) {
   const std::vector<Instruction>& all = blocks[static_cast<std::size_t>(block)].instructions;
-  const std::size_t shift = last_write(all, repeat, k_rcx);
-  if (shift == repeat || all[shift].text != "shr ecx, 3") return std::nullopt;
-  const RegisterValue left = values.before({k_rcx, 0, false}, block, shift);
-  const auto subtract = static_cast<std::size_t>(left.place & 0xffffffff);
-  if (left.origin != Origin::written || left.place >> 32 != static_cast<std::uint64_t>(block) ||
-      subtract >= shift) {
+  const RegisterValue count = values.before({k_rcx, 0, false}, block, repeat);
+  const auto shift = static_cast<std::size_t>(count.place & 0xffffffff);
+  if (!is_written_in(count, block) || count.offset != 0 || shift >= repeat ||
+      !all[shift].text.starts_with("shr e") || !all[shift].text.ends_with(", 3")) {
     return std::nullopt;
   }
+  const RegisterValue left = values.before({count.base, 0, false}, block, shift);
+  const auto subtract = static_cast<std::size_t>(left.place & 0xffffffff);
+  if (!is_written_in(left, block) || subtract >= shift) return std::nullopt;
   const std::string& text = all[subtract].text;
   const std::size_t align = last_write(all, subtract, k_rdi);
   if (!text.starts_with("sub ") || !(text.ends_with(", rdi") || text.ends_with(", edi")) ||

@@ -1,5 +1,9 @@
 #include "platform/budget/prove/kernel_counts.hpp"
 
+#include "kernels/motion/static_detector.hpp"
+#include "kernels/pose/depth_samples.hpp"
+#include "kernels/pose/weighted_fit.hpp"
+#include "nodes/node_limits.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 #include "schedules/kernel_list.hpp"
@@ -45,6 +49,11 @@ NamedCounts names_of(const Limits& limits) {
           {"range_pixels_per_blob", limits.range_pixels_per_blob},
           {"range_samples_per_blob", limits.range_samples_per_blob},
           {"row_bands", k_row_bands},
+          {"tools_per_partition", tools_of(limits, {0, k_tool_partitions})},
+          {"static_levels", k_static_window_levels},
+          {"fit_steps", k_refine_steps_max},
+          {"range_values", k_range_values_max},
+          {"square_side", 2 * k_scan_radius_max_px},
           {"labelings", k_labelings_max}};
 }
 

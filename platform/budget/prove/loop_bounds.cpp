@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <sstream>
 
 #include "platform/cells/toml_reader.hpp"
@@ -10,6 +11,8 @@
 
 namespace glint::prove {
 namespace {
+
+constexpr std::size_t k_no_depth = std::numeric_limits<std::size_t>::max();
 
 std::string trimmed(const std::string& line) {
   const std::size_t first = line.find_first_not_of(" \t");
@@ -60,9 +63,12 @@ LoopEntry loop_entry(const std::string& file, const std::string& source, const s
   TomlReader reader(*fields, file, entry.line_text() + ".");
   entry.text = reader.text("text", "");
   entry.at_most = reader.text("at_most", "");
+  entry.per = reader.text("per", "");
+  entry.in_each = reader.text("in_each", "");
   entry.also = reader.texts("also");
+  entry.together = reader.boolean("together", false);
   entry.each = reader.boolean("each", false);
-  entry.jumps_from = reader.text("jumps_from", "");
+  entry.jumps_from = reader.texts("jumps_from");
   if (const toml::table* totals = reader.table("total"); totals != nullptr) {
     TomlReader of_total(*totals, file, entry.line_text() + ".total.");
     for (const auto& [kernel, total] : *totals) {
@@ -112,6 +118,18 @@ bool contains(const LoopEntry& entry, const std::vector<SourceLine>& frames) {
   });
 }
 
+// The first entry that contains a line of the innermost frame that has one.
+const LoopEntry* entry_of_line(const std::vector<LoopEntry>& entries,
+                               const std::vector<SourceLine>& frames) {
+  for (const SourceLine& frame : frames) {
+    for (const LoopEntry& entry : entries) {
+      if (frame.line >= entry.first && frame.line <= entry.last && is_file(frame.file, entry.file))
+        return &entry;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 LoopBounds::LoopBounds(const std::string& file, const std::string& source_folder) {
@@ -125,17 +143,16 @@ LoopBounds::LoopBounds(const std::string& file, const std::string& source_folder
   }
   loops_ = entries_of(reader.table("loops"), file, source_folder);
   copies_ = entries_of(reader.table("copies"), file, source_folder);
+  calls_ = entries_of(reader.table("calls"), file, source_folder);
   reader.done();
 }
 
 const LoopEntry* LoopBounds::entry_of_copy(const std::vector<SourceLine>& frames) const {
-  for (const SourceLine& frame : frames) {
-    for (const LoopEntry& entry : copies_) {
-      if (frame.line >= entry.first && frame.line <= entry.last && is_file(frame.file, entry.file))
-        return &entry;
-    }
-  }
-  return nullptr;
+  return entry_of_line(copies_, frames);
+}
+
+const LoopEntry* LoopBounds::entry_of_call(const std::vector<SourceLine>& frames) const {
+  return entry_of_line(calls_, frames);
 }
 
 LoopMatch LoopBounds::match(const FunctionGraph& graph, const Loop& loop,
@@ -151,23 +168,33 @@ LoopMatch LoopBounds::match(const FunctionGraph& graph, const Loop& loop,
         graph.blocks[static_cast<std::size_t>(number)].instructions.back().address);
   }
   LoopMatch match;
+  std::size_t best_depth = 0;
   for (const LoopEntry& entry : loops_) {
-    const auto starts = [&](std::uint64_t jump) {
-      const std::vector<SourceLine>& frames = lines.of(jump);
-      return std::any_of(frames.begin(), frames.end(), [&](const SourceLine& at) {
-        return is_line(at, entry.line_text()) || is_line(at, entry.jumps_from);
-      });
+    const auto starts = [&](const SourceLine& at) {
+      return is_line(at, entry.line_text()) ||
+             std::any_of(entry.jumps_from.begin(), entry.jumps_from.end(),
+                         [&](const std::string& line) { return is_line(at, line); });
     };
-    if (std::none_of(jumps_back.begin(), jumps_back.end(), starts)) continue;
+    // Number of inlined calls between the jump back and the entry's line; an inner loop has fewer.
+    std::size_t depth = k_no_depth;
+    for (const std::uint64_t jump : jumps_back) {
+      const std::vector<SourceLine>& frames = lines.of(jump);
+      const auto found = std::find_if(frames.begin(), frames.end(), starts);
+      if (found == frames.end()) continue;
+      depth = std::min(depth, static_cast<std::size_t>(found - frames.begin()));
+    }
+    if (depth == k_no_depth) continue;
     const auto outside =
         std::find_if(addresses.begin(), addresses.end(),
                      [&](std::uint64_t address) { return !contains(entry, lines.of(address)); });
     if (outside != addresses.end()) {
       match.near = &entry;
       match.outside = *outside;
-    } else if (match.entry == nullptr ||
-               entry.last - entry.first < match.entry->last - match.entry->first) {
+    } else if (match.entry == nullptr || depth < best_depth ||
+               (depth == best_depth &&
+                entry.last - entry.first < match.entry->last - match.entry->first)) {
       match.entry = &entry;
+      best_depth = depth;
     }
   }
   return match;

@@ -11,6 +11,11 @@
 // code, because any statement there changes how a compiler optimises the loop.
 //   [copies."kernels/image/blobs.cpp"]      # bytes of a memcpy, memmove or memset
 //   "33" = { text = "std::copy_n(first, count, out);", at_most = "8 * blobs" }
+//   [calls."kernels/sort_pairs.hpp"]        # calls of a line in one activation
+//   "100" = { text = "detail::sort_rows<32>(values, count);", total.BackProject = "samples / 33" }
+//
+// `per` and `in_each`: jumps back for each execution of the loop around it that `per` names, as of
+// a triangular loop.
 //
 // A machine loop has an entry if all its instructions come from the lines of the entry or from
 // calls inlined there. A jump back to its start must come from the first line, or from that of
@@ -30,16 +35,18 @@
 
 namespace glint::prove {
 
-// A line of a [loops] table, or of a [copies] table: `at_most` are bytes there.
+// A line of a [loops] table, of a [copies] table (`at_most` are bytes there) or of [calls].
 struct LoopEntry {
   std::string file;
   int first = 0, last = 0;
-  std::vector<std::string> also;  // "file:line" outside, moved into the loop by a compiler
-  std::string jumps_from;         // another "file:line" that a jump back may come from
-  bool each = false;              // the maximum is that of each of its nested loops
-  std::string text;               // of the first line, without its indentation
-  std::string at_most;            // "": no maximum of one execution
+  std::vector<std::string> also;        // "file:line" outside, moved into the loop by a compiler
+  std::vector<std::string> jumps_from;  // more "file:line" that a jump back may come from
+  bool each = false;                    // the maximum is that of each of its nested loops
+  bool together = false;                // of all its nested loops, for each entry of the outermost
+  std::string text;                     // of the first line, without its indentation
+  std::string at_most;                  // "": no maximum of one execution
   std::map<std::string, std::string> total;  // by kernel
+  std::string per, in_each;                  // "file:line" of a loop around it; "": none
   std::string place;                         // "loops.toml:12"
 
   [[nodiscard]] std::string line_text() const { return file + ":" + std::to_string(first); }
@@ -67,10 +74,12 @@ class LoopBounds {
                                 const SourceLines& lines) const;
   // Entry of a call that copies a computed number of bytes; null if there is none.
   [[nodiscard]] const LoopEntry* entry_of_copy(const std::vector<SourceLine>& frames) const;
+  // Entry of a call that an activation makes a limited number of times; null if there is none.
+  [[nodiscard]] const LoopEntry* entry_of_call(const std::vector<SourceLine>& frames) const;
 
  private:
   std::map<std::string, std::vector<std::string>> kernels_;
-  std::vector<LoopEntry> loops_, copies_;
+  std::vector<LoopEntry> loops_, copies_, calls_;
 };
 
 }  // namespace glint::prove

@@ -21,8 +21,9 @@ std::string text_of(const PathGraph& graph) {
     text << "loop " << loop.header << " " << loop.at_most << "\n";
   }
   for (const PathTotal& total : graph.totals) {
-    text << "total " << total.at_most;
-    for (const int header : total.headers) text << " " << header;
+    text << (total.of == PathTotal::Of::runs ? "runs " : "total ") << total.at_most;
+    text << " " << total.scope;
+    for (const int block : total.blocks) text << " " << block;
     text << "\n";
   }
   return text.str();

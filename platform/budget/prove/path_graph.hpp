@@ -28,9 +28,14 @@ struct PathLoop {
   std::int64_t at_most = 0;
 };
 
+// Maximum of the jumps back of some loops together, in an activation or for each entry of the loop
+// around them; or of the runs of some blocks in an activation.
 struct PathTotal {
-  std::vector<int> headers;
+  enum class Of : std::uint8_t { jumps_back, runs };
+  std::vector<int> blocks;  // headers of the loops, or the blocks
   std::int64_t at_most = 0;
+  Of of = Of::jumps_back;
+  int scope = -1;  // header of the loop around them; negative: an activation
 };
 
 struct PathGraph {

@@ -50,15 +50,9 @@ class Program {
       text += row("l", loop, repeats_, static_cast<int>(loop), "<= 0");
     }
     for (std::size_t total = 0; total < graph_.totals.size(); ++total) {
-      std::map<int, double> together;
-      for (const int header : graph_.totals[total].headers) {
-        const int loop = roles_.loop_of_block[static_cast<std::size_t>(header)];
-        for (const auto& [variable, factor] : repeats_.at(loop)) {
-          if (factor > 0) together[variable] += 1;
-        }
-      }
-      text += " t" + std::to_string(total) + ":" + terms(together) +
-              " <= " + std::to_string(graph_.totals[total].at_most) + "\n";
+      text += " t" + std::to_string(total) + ":" + terms(together(graph_.totals[total])) + " <= " +
+              std::to_string(graph_.totals[total].scope < 0 ? graph_.totals[total].at_most : 0) +
+              "\n";
     }
     return text + "End\n";
   }
@@ -90,11 +84,29 @@ class Program {
       const int loop = roles_.loop_of_block[static_cast<std::size_t>(to)];
       if (role == EdgeRole::jumps_back) repeats_[loop][variables_] += 1;
       if (role == EdgeRole::enters) {
+        enters_[to].push_back(variables_);
         repeats_[loop][variables_] -=
             static_cast<double>(graph_.loops[static_cast<std::size_t>(loop)].at_most);
       }
     }
     ++variables_;
+  }
+
+  Row together(const PathTotal& total) const {
+    Row row;
+    for (const int block : total.blocks) {
+      if (total.of == PathTotal::Of::runs) {
+        for (const auto& [variable, sign] : balance_.at(block)) row[variable] += sign > 0 ? 1 : 0;
+        continue;
+      }
+      const int loop = roles_.loop_of_block[static_cast<std::size_t>(block)];
+      for (const auto& [variable, factor] : repeats_.at(loop)) row[variable] += factor > 0 ? 1 : 0;
+    }
+    if (total.scope < 0) return row;
+    for (const int variable : enters_.at(total.scope)) {
+      row[variable] -= static_cast<double>(total.at_most);
+    }
+    return row;
   }
 
   static std::string terms(const Row& row) {
@@ -121,6 +133,7 @@ class Program {
   int variables_ = 0;
   Row objective_;
   std::map<int, Row> balance_, calls_, repeats_;  // by block, by function called, by loop
+  std::map<int, std::vector<int>> enters_;        // by header
   std::vector<int> entry_;
 };
 

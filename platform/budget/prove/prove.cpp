@@ -124,6 +124,7 @@ void Prover::add_library_costs(const CallGraph& calls, KernelProof& proof) const
 void Prover::add_loops(const CallGraph& calls, const KernelCounts& kernel,
                        KernelProof& proof) const {
   std::map<const LoopEntry*, PathTotal> totals;
+  std::map<std::pair<const LoopEntry*, int>, PathTotal> together;  // by the outermost header
   int first = 0;
   for (const FunctionGraph& function : calls.functions) {
     std::vector<LoopMatch> matches;
@@ -158,12 +159,21 @@ void Prover::add_loops(const CallGraph& calls, const KernelCounts& kernel,
         proof.loops.push_back(finding);
         continue;
       }
+      std::size_t outermost = i;  // of the loops around with the same entry
       for (int around = loop.parent; around >= 0;
            around = function.loops[static_cast<std::size_t>(around)].parent) {
         const auto outer = static_cast<std::size_t>(around);
-        if (matches[outer].entry != entry || function.loops[outer].counted || entry->each) continue;
+        if (matches[outer].entry == entry && !function.loops[outer].counted) outermost = outer;
+      }
+      if (outermost != i && !entry->each && !entry->together) {
         proof.reasons.push_back("two nested loops of " + entry->line_text() + " at " +
                                 place_of(header.address));
+      }
+      if (entry->together) {
+        PathTotal& all = together[{entry, first + function.loops[outermost].header}];
+        all.scope = first + function.loops[outermost].header;
+        all.at_most = value_of(entry->at_most, limits_, entry->place);
+        all.blocks.push_back(first + loop.header);
       }
       finding.place = entry->line_text();
       const auto lower = [&](std::int64_t at_most) {
@@ -173,7 +183,7 @@ void Prover::add_loops(const CallGraph& calls, const KernelCounts& kernel,
       if (total != entry->total.end()) {
         PathTotal& all = totals[entry];
         all.at_most = value_of(total->second, kernel.worst, entry->place);
-        all.headers.push_back(first + loop.header);
+        all.blocks.push_back(first + loop.header);
         lower(all.at_most);
       }
       if (!entry->at_most.empty()) {
@@ -183,8 +193,42 @@ void Prover::add_loops(const CallGraph& calls, const KernelCounts& kernel,
       }
       if (finding.at_most) proof.graph.loops.push_back({first + loop.header, *finding.at_most});
       proof.loops.push_back(finding);
+      for (int around = loop.parent; around >= 0 && !entry->per.empty();
+           around = function.loops[static_cast<std::size_t>(around)].parent) {
+        const auto outer = static_cast<std::size_t>(around);
+        if (matches[outer].entry == nullptr || matches[outer].entry->line_text() != entry->per) {
+          continue;
+        }
+        proof.graph.totals.push_back({{first + loop.header},
+                                      value_of(entry->in_each, limits_, entry->place),
+                                      PathTotal::Of::jumps_back,
+                                      first + function.loops[outer].header});
+        break;
+      }
     }
     first += static_cast<int>(function.blocks.size());
+  }
+  for (const auto& [entry, total] : totals) proof.graph.totals.push_back(total);
+  for (const auto& [entry, total] : together) proof.graph.totals.push_back(total);
+}
+
+void Prover::add_calls(const CallGraph& calls, const KernelCounts& kernel,
+                       KernelProof& proof) const {
+  std::map<const LoopEntry*, PathTotal> totals;
+  int number = 0;
+  for (const FunctionGraph& function : calls.functions) {
+    for (const Block& block : function.blocks) {
+      const int here = number++;
+      if (!block.callee && block.library.empty()) continue;
+      const LoopEntry* entry = bounds_.entry_of_call(lines_.of(block.instructions.back().address));
+      if (entry == nullptr) continue;
+      const auto total = entry->total.find(kernel.kernel);
+      if (total == entry->total.end()) continue;
+      PathTotal& all = totals[entry];
+      all.of = PathTotal::Of::runs;
+      all.at_most = value_of(total->second, kernel.worst, entry->place);
+      all.blocks.push_back(here);
+    }
   }
   for (const auto& [entry, total] : totals) proof.graph.totals.push_back(total);
 }
@@ -215,6 +259,7 @@ KernelProof Prover::prove(const KernelCounts& kernel, const std::string& folder)
   const FunctionSymbol* root = root_of(code_, names->second, proof.reasons);
   if (root == nullptr) return proof;
   proof.function = short_name(root->name);
+  proof.root = root->name;
   const CallGraph calls = call_graph(code_, root->address);
   for (const FunctionGraph& function : calls.functions) {
     for (const Refusal& refusal : function.refusals) {
@@ -230,6 +275,7 @@ KernelProof Prover::prove(const KernelCounts& kernel, const std::string& folder)
   check_same_code(calls, proof);
   add_library_costs(calls, proof);
   add_loops(calls, kernel, proof);
+  add_calls(calls, kernel, proof);
   if (!proof.reasons.empty()) return proof;
 
   const PathSolution solution = solve(proof.graph, folder);

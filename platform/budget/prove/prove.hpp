@@ -36,9 +36,9 @@ struct HeavyBlock {
 };
 
 struct KernelProof {
-  std::string kernel, function;       // the function that the bound covers
-  std::vector<std::string> reasons;   // why it is not proved; empty: proved
-  std::vector<std::string> declared;  // library functions with a declared cost
+  std::string kernel, function, root;  // the function that the bound covers; root: demangled
+  std::vector<std::string> reasons;    // why it is not proved; empty: proved
+  std::vector<std::string> declared;   // library functions with a declared cost
   std::vector<LoopFinding> loops;
   std::vector<HeavyBlock> heaviest;  // largest first
   PathGraph graph;
@@ -62,6 +62,7 @@ class Prover {
  private:
   [[nodiscard]] std::string place_of(std::uint64_t address) const;
   void add_loops(const CallGraph& calls, const KernelCounts& kernel, KernelProof& proof) const;
+  void add_calls(const CallGraph& calls, const KernelCounts& kernel, KernelProof& proof) const;
   void add_library_costs(const CallGraph& calls, KernelProof& proof) const;
   void check_same_code(const CallGraph& calls, KernelProof& proof) const;
   void find_heaviest(const PathSolution& solution, KernelProof& proof) const;

@@ -3,6 +3,7 @@
 namespace glint::prove {
 namespace {
 
+constexpr int k_merges_max = 3;  // of paths with one constant
 constexpr std::int64_t k_offset_max = std::int64_t{1} << 48;
 constexpr std::int64_t k_narrow_max = std::int64_t{1} << 31;
 
@@ -42,8 +43,27 @@ RegisterValue RegisterValues::at_end(Register of, int block, int start) const {
                 start);
 }
 
+// The constant that a register has at the end of each predecessor.
+std::optional<std::int64_t> RegisterValues::same_constant(Register of, int block, int start,
+                                                          int depth) const {
+  if (depth == 0 || predecessors(block).empty()) return std::nullopt;
+  std::optional<std::int64_t> same;
+  for (const int from : predecessors(block)) {
+    const std::size_t end = blocks_[static_cast<std::size_t>(from)].instructions.size();
+    const RegisterValue value = traced({of, 0, false}, from, end, start, depth - 1);
+    if (value.origin != Origin::none || (same && *same != value.offset)) return std::nullopt;
+    same = value.offset;
+  }
+  return same;
+}
+
 RegisterValue RegisterValues::before(const RegisterSum& sum, int block, std::size_t index,
                                      int start) const {
+  return traced(sum, block, index, start, k_merges_max);
+}
+
+RegisterValue RegisterValues::traced(const RegisterSum& sum, int block, std::size_t index,
+                                     int start, int depth) const {
   RegisterValue value;
   value.offset = sum.offset;
   value.base = sum.base;
@@ -76,7 +96,13 @@ RegisterValue RegisterValues::before(const RegisterSum& sum, int block, std::siz
     if (block == start) return ends_at(Origin::start, 0);
     if (immediate_[static_cast<std::size_t>(block)] < 0 ||
         (written_between(block) >> value.base & 1) != 0) {
-      return ends_at(Origin::combined, static_cast<std::uint64_t>(block));
+      const std::optional<std::int64_t> constant = same_constant(value.base, block, start, depth);
+      if (!constant || value.narrow) {
+        return ends_at(Origin::combined, static_cast<std::uint64_t>(block));
+      }
+      value.offset += *constant;
+      value.base = k_no_register;
+      return ends_at(Origin::none, 0);
     }
     block = immediate_[static_cast<std::size_t>(block)];
     index = blocks_[static_cast<std::size_t>(block)].instructions.size();

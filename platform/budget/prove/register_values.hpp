@@ -51,6 +51,10 @@ class RegisterValues {
   }
 
  private:
+  [[nodiscard]] RegisterValue traced(const RegisterSum& sum, int block, std::size_t index,
+                                     int start, int depth) const;
+  [[nodiscard]] std::optional<std::int64_t> same_constant(Register of, int block, int start,
+                                                          int depth) const;
   [[nodiscard]] std::uint64_t written_between(int block) const;
 
   const std::vector<Block>& blocks_;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/budget/prove/proved_code.hpp"
 #include "platform/input_error.hpp"
 #include "tests/unit/beside_test.hpp"
 #include "tests/unit/platform/budget/prove/observed_steps.hpp"
@@ -185,6 +186,40 @@ TEST_F(ProveToy, RejectsALoopWhoseLineMoved) {
     EXPECT_NE(std::string(error.what()).find("; line 11 has it"), std::string::npos)
         << error.what();
   }
+}
+
+TEST_F(ProveToy, BoundsATriangularLoopByItsSum) {
+  const KernelProof proof = proof_of("Triangle");
+  expect_tight(proof, &toy_triangle, 700);  // twice as many with the inner loop's maximum alone
+  EXPECT_EQ(accepted({{proof.graph_text, proof.certificate_text}}), 1);
+}
+
+TEST_F(ProveToy, LimitsTheCallsOfALineInAnActivation) {
+  const KernelProof proof = proof_of("Seldom"), sum = proof_of("Sum");
+  ASSERT_TRUE(proof.proved()) << proof.reasons.front();
+  EXPECT_GT(proof.certificate.bound, 3 * sum.certificate.bound);
+  EXPECT_LT(proof.certificate.bound, 5 * sum.certificate.bound);
+  EXPECT_EQ(accepted({{proof.graph_text, proof.certificate_text}}), 1);
+  std::string more = proof.graph_text;
+  more.replace(more.find("\nruns 3 "), 8, "\nruns 4 ");
+  EXPECT_EQ(accepted({{more, proof.certificate_text}}), 0);
+}
+
+TEST_F(ProveToy, HoldsOnlyForTheMachineCodeOfTheProof) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  const KernelProof sum = proof_of("Sum"), calls = proof_of("Calls");
+  const std::string other(64, '0');
+  const ProvedBounds bounds =
+      bounds_of_program({"x86-64",
+                         {},
+                         {{"Sum", sum.root, sum.graph.code_sha256, sum.certificate.bound},
+                          {"Calls", calls.root, other, calls.certificate.bound}}},
+                        program);
+  EXPECT_EQ(bounds.instructions,
+            (std::map<std::string, std::int64_t>{{"Sum", sum.certificate.bound}}));
+  ASSERT_TRUE(bounds.refused.contains("Calls"));
+  EXPECT_EQ(bounds.refused.at("Calls"), "the program has other machine code than the proof");
+  EXPECT_THROW((void)bounds_of_program({"arm64", {}, {}}, program), InputError);
 }
 
 // A kernel's edit that moves a loop is found here, before `glint budget prove` runs.

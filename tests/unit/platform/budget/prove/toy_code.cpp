@@ -109,3 +109,20 @@ TOY int toy_uneven(const int* values, int /*count*/) {
   }
   return sum;
 }
+
+// The inner loop makes one pass more in each pass of the outer one.
+TOY int toy_triangle(const int* values, int count) {
+  int sum = 0;
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < i; ++j) sum = sum * 3 + values[j] % 5;
+  }
+  return sum;
+}
+
+TOY int toy_seldom(const int* values, int count) {
+  int sum = 0;
+  for (int i = 0; i < count; ++i) {
+    if (values[i] == 7) sum += toy_sum(values, count);
+  }
+  return sum;
+}

@@ -13,4 +13,5 @@ int toy_switch(const int* values, int count);
 int toy_copy(const int* values, int count);
 int toy_counted(const int* values, int count);
 int toy_two_entries(const int* values, int count);
+int toy_triangle(const int* values, int count);
 }
