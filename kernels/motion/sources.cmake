@@ -9,9 +9,8 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/head_drift_correc
 # SUNDIALS behind one file, in a library of its own: what it asks of the machine is judged apart
 # from the kernels' short list. Static, so that a board needs no further file.
 find_path(GLINT_SUNDIALS_INCLUDE arkode/arkode_erkstep.h REQUIRED)
-find_library(GLINT_SUNDIALS_ARKODE libsundials_arkode.a REQUIRED)
-find_library(GLINT_SUNDIALS_GENERIC libsundials_generic.a REQUIRED)
+include(${CMAKE_CURRENT_LIST_DIR}/sundials.cmake)
 add_library(glint_integrate STATIC ${CMAKE_CURRENT_LIST_DIR}/integrate_motion.cpp)
 target_include_directories(glint_integrate SYSTEM PRIVATE ${GLINT_SUNDIALS_INCLUDE})
 target_link_libraries(glint_integrate PUBLIC glint_kernels
-  PRIVATE glint_core_flags ${GLINT_SUNDIALS_ARKODE} ${GLINT_SUNDIALS_GENERIC})
+  PRIVATE glint_core_flags Glint::sundials)

@@ -1,8 +1,8 @@
 # One line that names what decides the code: a cost measured under another line is not this build's.
 # Directory-wide options count too, so that a sanitizer or a global -march is seen.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
-get_property(options DIRECTORY ${CMAKE_SOURCE_DIR} PROPERTY COMPILE_OPTIONS)
-get_property(definitions DIRECTORY ${CMAKE_SOURCE_DIR} PROPERTY COMPILE_DEFINITIONS)
+get_property(options DIRECTORY ${PROJECT_SOURCE_DIR} PROPERTY COMPILE_OPTIONS)
+get_property(definitions DIRECTORY ${PROJECT_SOURCE_DIR} PROPERTY COMPILE_DEFINITIONS)
 set(words ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}})
 separate_arguments(words)
 list(APPEND words ${options})

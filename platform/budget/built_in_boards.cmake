@@ -1,5 +1,5 @@
 # The board files of schedules/boards, as texts in a header: `--board NAME` needs no path.
-file(GLOB boards CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/schedules/boards/*.toml)
+file(GLOB boards CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/schedules/boards/*.toml)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${boards})
 set(rows "")
 foreach(board ${boards})

@@ -3,32 +3,14 @@
 #include <cstdio>
 
 #include "graph/describe.hpp"
-#include "graph/plan_tables.hpp"
 #include "nodes/mapper.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/input_error.hpp"
-#include "schedules/node_bounds.hpp"
+#include "schedules/graph_group.hpp"
 
 namespace glint {
 namespace {
-
-template <class G>
-std::vector<TaskNode> nodes_of() {
-  std::vector<TaskNode> nodes;
-  for (const graph::NodeInfo& info : graph::Description<G>::nodes) {
-    TaskNode node;
-    node.name = std::string(info.name);
-    node.copy = info.copy;
-    node.copies = info.copies;
-    const graph::NodeSet needed = graph::predecessors<G>[nodes.size()];
-    for (int before = 0; before < G::node_count; ++before) {
-      if ((needed >> before & 1U) != 0) node.after.push_back(before);
-    }
-    nodes.push_back(node);
-  }
-  return nodes;
-}
 
 std::string signature_of(std::uint64_t signature) {
   char text[24];
@@ -50,20 +32,20 @@ TaskModel task_structure_of(const Cell& cell) {
   frame.min_gap_ns = cell.camera.period.nanoseconds;
   frame.jitter_ns = cell.arrival_jitter.nanoseconds;
   frame.deadline_ns = cell.deadlines.frame.nanoseconds;
-  frame.nodes = nodes_of<Tracker>();
+  frame.nodes = task_nodes_of<Tracker>();
   TaskGroup tick;
   tick.name = "tick";
   tick.min_gap_ns = tick_period_ns(cell);
   tick.deadline_ns = cell.deadlines.tick.nanoseconds;
   tick.can_writes = can_frames_per_tick_max(cell, cell.tools.count);
-  tick.nodes = nodes_of<Output>();
+  tick.nodes = task_nodes_of<Output>();
   model.groups = {frame, tick};
   if (cell.background) {
     TaskGroup background;
     background.name = "background";
     background.min_gap_ns = background.deadline_ns = cell.background->period.nanoseconds;
     background.resumable = true;
-    background.nodes = nodes_of<Background>();
+    background.nodes = task_nodes_of<Background>();
     model.groups.push_back(background);
   }
   return model;
@@ -80,14 +62,11 @@ TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemSh
   TaskModel model = task_structure_of(cell);
   model.system = system;
   model.groups[k_tick_group_index].can_writes = can_frames_per_tick_max(cell, limits.tools);
-  const auto set_bounds = [](TaskGroup& group, const auto& bounds) {
-    for (std::size_t n = 0; n < bounds.size(); ++n) group.nodes[n].bound_ns = bounds[n];
-  };
-  set_bounds(model.groups[k_frame_group_index], node_bounds<Tracker>(costs, limits));
-  set_bounds(model.groups[k_tick_group_index], node_bounds<Output>(costs, limits));
+  set_bounds<Tracker>(model.groups[k_frame_group_index], costs, limits);
+  set_bounds<Output>(model.groups[k_tick_group_index], costs, limits);
   if (cell.background) {
     TaskGroup& background = model.groups[k_background_group_index];
-    set_bounds(background, node_bounds<Background>(costs, limits));
+    set_bounds<Background>(background, costs, limits);
     // An activation is one slice, without a preemption point before its end.
     for (const TaskNode& node : background.nodes) background.longest_slice_ns += node.bound_ns;
   }

@@ -101,98 +101,85 @@ TrackSettings track_settings(const Cell& cell) {
   return settings;
 }
 
-// Nodes that both trackers have: all from the candidate markers on.
-template <class AnyTracker>
-void configure_common(const Cell& cell, AnyTracker& tracker) {
-  const Limits limits = limits_of(cell);
-  tracker.template node<PredictTracks>().settings = reach_settings(cell);
-  tracker.template node<PredictTracks>().camera = cell.camera.model;
-  tracker.template node<PredictTracks>().limits = limits;
-  tracker.template for_each<Correspond>([&](Correspond& node) {
-    node.settings = correspond_settings(cell);
-    node.limits = limits;
-  });
-  tracker.template node<AssignMarkers>().limits = limits;
-  tracker.template node<NameFew>().limits = limits;
-  const MarkerNoise noise = declared_noise(cell.camera);
-  tracker.template node<NameFew>().noise = noise;
-  tracker.template for_each<RefinePose>([&](RefinePose& node) {
-    node.limits = limits;
-    node.noise = noise;
-    node.estimate_noise = cell.camera.estimate_noise;
-    node.correction = cell.correction;
-    node.uncertainty = cell.camera.uncertainty;
-  });
-  tracker.template node<AnchorHead>().limits = limits;
-  tracker.template node<AnchorHead>().reference = cell.reference;
-  tracker.template node<AnchorHead>().noise = cell.head_noise;
-  tracker.template for_each<FollowMotion>([&](FollowMotion& node) {
-    node.limits = limits;
-    node.settings.motion = cell.motion;
-    node.settings.rest.correlation = cell.camera.correlation;
-  });
-  tracker.template node<TrackTools>().settings = track_settings(cell);
-  tracker.template node<TrackTools>().noise = noise;
-  tracker.template node<TrackTools>().estimate_noise = cell.camera.estimate_noise;
-  tracker.template node<TrackTools>().limits = limits;
-}
-
-template <class AnyGraph>
-void prepare(AnyGraph& graph) {
-  if (const graph::Prepared prepared = graph.prepare(); !prepared) {
-    throw std::logic_error("node " + std::string(prepared.name) + " cannot be prepared: " +
-                           std::string(name_of(static_cast<Reason>(prepared.reason))));
-  }
-}
-
 }  // namespace
 
-void configure(const Cell& cell, Tracker& tracker) {
-  const Camera& camera = cell.camera;
-  StampFrame& stamp = tracker.node<StampFrame>();
-  stamp.width = camera.model.width;
-  stamp.height = camera.model.height;
-  stamp.reflectivity_bits = camera.reflectivity_bits;
-  LocateRois& locate = tracker.node<LocateRois>();
-  locate.camera = camera.model;
-  locate.limits = limits_of(cell);
-  tracker.for_each<RoiThreshold>([&](RoiThreshold& node) {
-    node.threshold = camera.threshold;
-    node.limits = locate.limits;
-  });
-  tracker.node<FindBlobs>().settings = blob_settings(cell);
-  tracker.node<FindBlobs>().limits = locate.limits;
-  BackProject& back_project = tracker.node<BackProject>();
-  back_project.camera = camera.model;
-  back_project.depth = camera.depth;
-  back_project.nominal = nominal_marker(cell.tools);
-  back_project.limits = locate.limits;
-  configure_common(cell, tracker);
-  prepare(tracker);
+void set_up(const Cell& cell, StampFrame& node) {
+  node.width = cell.camera.model.width;
+  node.height = cell.camera.model.height;
+  node.reflectivity_bits = cell.camera.reflectivity_bits;
 }
 
-void configure(const Cell& cell, MarkerTracker& tracker) {
-  configure_common(cell, tracker);
-  prepare(tracker);
+void set_up(const Cell& cell, PredictTracks& node) {
+  node.settings = reach_settings(cell);
+  node.camera = cell.camera.model;
 }
 
-void configure(const Cell& cell, Output& output) {
-  PredictTools& predict = output.node<PredictTools>();
-  predict.settings.nominal_gap = cell.camera.period;
-  predict.settings.lost_after = cell.lost_after;
-  predict.settings.actuation_delay = cell.actuation_delay;
-  predict.settings.motion = cell.motion;
-  predict.settings.stamp_sigma_s = cell.camera.uncertainty.time_stamp_s;
-  predict.settings.robot_covariance.diagonal() << Vector3::Constant(square(cell.robot_sigma_m)),
+void set_up(const Cell& cell, LocateRois& node) { node.camera = cell.camera.model; }
+
+void set_up(const Cell& cell, RoiThreshold& node) { node.threshold = cell.camera.threshold; }
+
+void set_up(const Cell& cell, FindBlobs& node) { node.settings = blob_settings(cell); }
+
+void set_up(const Cell& cell, BackProject& node) {
+  node.camera = cell.camera.model;
+  node.depth = cell.camera.depth;
+  node.nominal = nominal_marker(cell.tools);
+}
+
+void set_up(const Cell& cell, Correspond& node) { node.settings = correspond_settings(cell); }
+
+void set_up(const Cell& cell, NameFew& node) { node.noise = declared_noise(cell.camera); }
+
+void set_up(const Cell& cell, RefinePose& node) {
+  node.noise = declared_noise(cell.camera);
+  node.estimate_noise = cell.camera.estimate_noise;
+  node.correction = cell.correction;
+  node.uncertainty = cell.camera.uncertainty;
+}
+
+void set_up(const Cell& cell, AnchorHead& node) {
+  node.reference = cell.reference;
+  node.noise = cell.head_noise;
+}
+
+void set_up(const Cell& cell, FollowMotion& node) {
+  node.settings.motion = cell.motion;
+  node.settings.rest.correlation = cell.camera.correlation;
+}
+
+void set_up(const Cell& cell, TrackTools& node) {
+  node.settings = track_settings(cell);
+  node.noise = declared_noise(cell.camera);
+  node.estimate_noise = cell.camera.estimate_noise;
+}
+
+void set_up(const Cell& cell, PredictTools& node) {
+  node.settings.nominal_gap = cell.camera.period;
+  node.settings.lost_after = cell.lost_after;
+  node.settings.actuation_delay = cell.actuation_delay;
+  node.settings.motion = cell.motion;
+  node.settings.stamp_sigma_s = cell.camera.uncertainty.time_stamp_s;
+  node.settings.robot_covariance.diagonal() << Vector3::Constant(square(cell.robot_sigma_m)),
       Vector3::Constant(square(cell.robot_sigma_rad));
-  predict.limits = limits_of(cell);
-  PackCan& pack = output.node<PackCan>();
-  pack.settings.format = cell.can.format;
-  pack.settings.base_identifier = cell.can.base_id;
-  pack.settings.node = static_cast<unsigned>(cell.can.node);
-  pack.limits = predict.limits;
-  prepare(output);
 }
+
+void set_up(const Cell& cell, PackCan& node) {
+  node.settings.format = cell.can.format;
+  node.settings.base_identifier = cell.can.base_id;
+  node.settings.node = static_cast<unsigned>(cell.can.node);
+}
+
+void require_prepared(const graph::Prepared& prepared) {
+  if (prepared) return;
+  throw std::logic_error("node " + std::string(prepared.name) + " cannot be prepared: " +
+                         std::string(name_of(static_cast<Reason>(prepared.reason))));
+}
+
+void configure(const Cell& cell, Tracker& tracker) { configure<Tracker>(cell, tracker); }
+void configure(const Cell& cell, MarkerTracker& tracker) {
+  configure<MarkerTracker>(cell, tracker);
+}
+void configure(const Cell& cell, Output& output) { configure<Output>(cell, output); }
 
 MarkerNoise declared_noise(const Camera& camera) noexcept {
   const CameraModel& model = camera.model;
