@@ -157,7 +157,7 @@ AllowedInputs allowed_inputs(TomlReader& dds, const std::string& file) {
   return allowed;
 }
 
-void read_sinks(TomlReader& root, Cell& cell) {
+void read_sinks(TomlReader& root, const CellFileReader& files, Cell& cell) {
   read_can(root.table("can"), cell);
   if (const toml::table* table = root.table("dds")) {
     TomlReader reader(*table, cell.file, "dds.");
@@ -165,6 +165,7 @@ void read_sinks(TomlReader& root, Cell& cell) {
     cell.dds.interface = reader.text("interface", cell.dds.interface);
     cell.dds.domain = static_cast<int>(reader.integer("domain", cell.dds.domain, 0, 232));
     cell.dds.allow = allowed_inputs(reader, cell.file);
+    cell.dds.security = files.resolved(reader.text("security", ""), "dds.security");
     reader.done();
   }
   if (const toml::table* table = root.table("buttons")) {
@@ -283,7 +284,7 @@ Cell cell_from_text(const std::string& text, const std::string& file,
       root.table("background"), root.table("mapping"),
       [&](const std::string& path, const std::string& key) { return parser.resolved(path, key); },
       cell);
-  read_sinks(root, cell);
+  read_sinks(root, parser, cell);
   parser.read_robot(root.table("robot"));
   check_tracked_robot(root.table("mapping"), cell);
   if (const NamedFile* named = parser.named_by(root, "motion")) cell.motion = motion_of(*named);

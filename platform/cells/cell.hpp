@@ -40,7 +40,17 @@ struct DdsCellSettings {
   bool on = true;
   std::string interface = "lo";
   int domain = 0;
-  AllowedInputs allow;  // from other participants
+  AllowedInputs allow;   // from other participants
+  std::string security;  // folder with keys and documents; empty: no DDS Security
+  std::string name;      // namespace of all topics and of the node; empty: none
+  RosGraph ros_graph = RosGraph::off;
+};
+
+// Server of OpenIGTLink messages.
+struct OpenIgtLinkSettings {
+  std::string address = "127.0.0.1";  // IPv4, of the interface that it listens on
+  int port = 18944;
+  Duration period = milliseconds(20);  // between two messages of a tool
 };
 
 struct RecordSettings {
@@ -171,7 +181,8 @@ struct Cell {
   std::optional<MappingSettings> mapping;        // empty: its slices have no work
   CanSettings can;
   DdsCellSettings dds;
-  Duration button_timeout = k_button_timeout;  // release of a held button that is not repeated
+  std::optional<OpenIgtLinkSettings> openigtlink;  // empty: no server
+  Duration button_timeout = k_button_timeout;      // release of a held button that is not repeated
   RecordSettings record;
   FileSettings files;
   Method method = Method::glint;    // chosen on the command line

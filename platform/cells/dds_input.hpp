@@ -1,4 +1,4 @@
-// Inputs of a run over DDS. A cell allows each by its name: `[dds] allow`.
+// Choices of a cell's [dds]: the inputs that it allows by name, the node in ROS 2's graph.
 #pragma once
 
 #include <array>
@@ -7,6 +7,9 @@
 #include <string_view>
 
 namespace glint {
+
+// The release of ROS 2 that reads ros_discovery_info: Humble's identifiers are longer.
+enum class RosGraph : std::uint8_t { off, humble, iron };
 
 enum class DdsInput : std::uint8_t {
   joint_states = 0,

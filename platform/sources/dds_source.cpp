@@ -65,6 +65,7 @@ std::unique_ptr<DdsSource> DdsSource::open(Cell& cell, LiveSettings live) {
   DdsSettings settings;
   settings.domain = source.domain.value_or(cell.dds.domain);
   settings.interface = cell.dds.interface;
+  settings.security = cell.dds.security;
   auto process = DdsProcess::of(settings, DdsProcess::k_image_bytes);
   if (!names_lens(cell)) {
     set_lens(cell, lens_from(*process, source.camera_info_topic, live));

@@ -16,6 +16,7 @@ void add_map(CLI::App& app, int& exit_code);
 void add_reference(CLI::App& app, int& exit_code);
 void add_path(CLI::App& app, int& exit_code);
 void add_inspect(CLI::App& app, int& exit_code);
+void add_dds(CLI::App& app, int& exit_code);
 void add_can(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_budget(CLI::App& app, int& exit_code, ShardedWork& work);

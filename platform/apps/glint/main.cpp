@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   glint::add_path(app, exit_code);
   glint::add_inspect(app, exit_code);
   glint::add_can(app, exit_code);
+  glint::add_dds(app, exit_code);
   glint::add_export(app, exit_code);
   glint::add_budget(app, exit_code, work);
   glint::add_merge(app, work, merged);

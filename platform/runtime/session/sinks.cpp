@@ -50,6 +50,7 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
   DdsSettings settings;
   settings.domain = cell.dds.domain;
   settings.interface = cell.dds.interface;
+  settings.security = cell.dds.security;
   settings.tool_names = names_of(cell.tools);
   settings.button_timeout = cell.button_timeout;
   settings.tick_period = tick_period(cell);

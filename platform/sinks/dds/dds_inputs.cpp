@@ -28,9 +28,6 @@ constexpr std::size_t k_tool_bytes = 128;  // a name has 31 at most
 constexpr Duration k_poll_period = milliseconds(20);
 constexpr int k_messages_per_read_max = 256;  // per call and topic: no topic starves the others
 
-constexpr const char* k_button_names[k_button_count] = {"button", "button_delete", "button_undo",
-                                                        "button_finish"};
-
 // Only the reading thread writes the counters.
 std::uint64_t count_up(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) {
   const std::uint64_t now = counter.load(std::memory_order_relaxed) + by;
@@ -62,16 +59,21 @@ DdsInputs::DdsInputs(std::shared_ptr<DdsProcess> process, const DdsSettings& set
                           std::size_t bytes_max) {
     return readers_.emplace_back(process_->reader(type, topic, quality, bytes_max));
   };
-  joints_reader_ = add(joint_state_type(), k_joint_states_topic, k_joints, k_joints_bytes);
+  const auto topics = [&](DdsInput input) {
+    return topics_of(input, settings.topic_prefix, settings.name);
+  };
+  joints_reader_ =
+      add(joint_state_type(), topics(DdsInput::joint_states)[0], k_joints, k_joints_bytes);
   description_reader_ =
-      add(text_type(), k_robot_description_topic, k_description, k_description_bytes);
-  guess_reader_ = add(pose_covariance_type(), k_initial_pose_topic, k_guess, k_guess_bytes);
-  const std::string& prefix = settings.topic_prefix;
-  add_reader_ = add(text_type(), topic_under(prefix, k_tool_add_name), k_tool, k_tool_bytes);
-  remove_reader_ = add(text_type(), topic_under(prefix, k_tool_remove_name), k_tool, k_tool_bytes);
+      add(text_type(), topics(DdsInput::robot_description)[0], k_description, k_description_bytes);
+  guess_reader_ =
+      add(pose_covariance_type(), topics(DdsInput::initial_pose)[0], k_guess, k_guess_bytes);
+  const std::vector<std::string> of_tools = topics(DdsInput::tools);
+  add_reader_ = add(text_type(), of_tools[0], k_tool, k_tool_bytes);
+  remove_reader_ = add(text_type(), of_tools[1], k_tool, k_tool_bytes);
+  const std::vector<std::string> of_buttons = topics(DdsInput::buttons);
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
-    buttons_[i].reader =
-        add(bool_type(), topic_under(prefix, k_button_names[i]), k_button, k_button_bytes);
+    buttons_[i].reader = add(bool_type(), of_buttons[i], k_button, k_button_bytes);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "platform/runtime/rt/clock.hpp"
 #include "platform/runtime/rt/futex.hpp"
 #include "platform/sinks/dds/network.hpp"
+#include "platform/sinks/dds/security_files.hpp"
 
 namespace glint {
 namespace {
@@ -53,13 +54,14 @@ std::shared_ptr<DdsProcess> DdsProcess::of(const DdsSettings& settings,
   static std::mutex open_mutex;
   static std::map<int, std::weak_ptr<DdsProcess>> open;
   require_network_interface(settings.interface);
+  require_security(settings.security);
   const std::lock_guard lock(open_mutex);
   if (const auto process = open[settings.domain].lock()) {
     if (cyclone_configuration(process->settings_) == cyclone_configuration(settings)) {
       return process;
     }
     throw InputError("dds.domain: this program uses domain " + std::to_string(settings.domain) +
-                     " with another interface or other peers; expected the same");
+                     " with another interface, other peers or other keys; expected the same");
   }
   std::shared_ptr<DdsProcess> process(new DdsProcess(settings, incoming_bytes));
   open[settings.domain] = process;
@@ -90,6 +92,9 @@ void DdsProcess::start() {
                                         "--domain", std::to_string(settings_.domain)};
   for (const std::string& peer : settings_.peers) {
     arguments.insert(arguments.end(), {"--peer", peer});
+  }
+  if (!settings_.security.empty()) {
+    arguments.insert(arguments.end(), {"--security", settings_.security});
   }
   started_ = monotonic_now();
   silent_checks_ = 0;

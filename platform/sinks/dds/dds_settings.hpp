@@ -6,6 +6,7 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/units.hpp"
+#include "platform/cells/dds_input.hpp"
 #include "platform/runtime/rt/followed_robot.hpp"
 #include "platform/runtime/rt/loss_counters.hpp"
 #include "platform/runtime/rt/overrun_counters.hpp"
@@ -33,7 +34,10 @@ struct DdsSettings {
   int domain = 0;                  // ROS_DOMAIN_ID, 0..232
   std::string interface = "lo";    // multicast unless it is a loopback interface
   std::vector<std::string> peers;  // further addresses for discovery
+  std::string security;            // folder with keys and documents; empty: no DDS Security
   std::string topic_prefix = "glint";
+  std::string name;  // namespace of all topics and of the node; empty: none
+  RosGraph ros_graph = RosGraph::off;
   std::vector<std::string> tool_names = {"pen"};  // element i names PoseSample::tool i
   FrameNames frames;
   std::vector<StaticTransform> static_transforms;  // all of tf_static

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "platform/input_error.hpp"
+#include "platform/sinks/dds/security_files.hpp"
 
 namespace glint {
 namespace {
@@ -42,7 +43,7 @@ bool is_loopback(const std::string& name) {
 // Rejects names with XML markup; no interface or host has such a name.
 std::string plain(const std::string& text) {
   if (text.find_first_of("<>&\"'") != std::string::npos) {
-    throw InputError("dds: found '" + text + "'; expected a host or interface name");
+    throw InputError("dds: found '" + text + "'; expected a host, interface or folder name");
   }
   return text;
 }
@@ -79,7 +80,8 @@ std::string cyclone_configuration(const DdsSettings& settings) {
          k_participant_index_max + "</MaxAutoParticipantIndex>" +
          (peers.empty() ? "" : "<Peers>" + peers + "</Peers>") +
          "</Discovery><Internal><MaxSampleSize>" + std::to_string(k_message_bytes_max) +
-         "B</MaxSampleSize></Internal><Tracing><Verbosity>severe</Verbosity></Tracing></Domain></"
+         "B</MaxSampleSize></Internal>" + security_configuration(plain(settings.security)) +
+         "<Tracing><Verbosity>severe</Verbosity></Tracing></Domain></"
          "CycloneDDS>";
 }
 

@@ -1,11 +1,16 @@
 #include "platform/sinks/dds/participant.hpp"
 
+#include <dds/ddsrt/log.h>
+
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <mutex>
 
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "platform/sinks/dds/network.hpp"
+#include "platform/sinks/dds/security_files.hpp"
 
 namespace glint {
 namespace {
@@ -53,6 +58,47 @@ dds_entity_t topic_of(dds_entity_t participant, const TopicType& type, const std
                  "topic " + name);
 }
 
+// Cyclone's errors, on standard error instead of cyclonedds.log. Other participants cause some,
+// e.g. by a refused certificate: the number of lines is bounded.
+class CycloneErrors {
+ public:
+  static CycloneErrors& of_process() {
+    static CycloneErrors errors;
+    return errors;
+  }
+  // For a call whose error becomes an exception: no lines until take_last().
+  void keep() {
+    const std::lock_guard lock(mutex_);
+    keeping_ = true;
+    last_.clear();
+  }
+  std::string take_last() {
+    const std::lock_guard lock(mutex_);
+    keeping_ = false;
+    return std::move(last_);
+  }
+
+ private:
+  CycloneErrors() { dds_set_log_sink(&receive, this); }
+  static void receive(void* errors, const dds_log_data_t* data) {
+    auto* const self = static_cast<CycloneErrors*>(errors);
+    const std::lock_guard lock(self->mutex_);
+    const std::string text = printable(std::string(data->message, data->size));
+    if (self->keeping_) {
+      self->last_ = text;
+    } else if (self->lines_ < k_lines_max) {
+      ++self->lines_;
+      std::fprintf(stderr, "dds: %s\n", text.c_str());
+    }
+  }
+
+  static constexpr int k_lines_max = 20;
+  std::mutex mutex_;
+  bool keeping_ = false;
+  int lines_ = 0;
+  std::string last_;
+};
+
 }  // namespace
 
 // A domain of this process; it exists until its last participant leaves.
@@ -97,13 +143,22 @@ Participant::Participant(const DdsSettings& settings) {
                      "; expected 0 to 232");
   }
   require_network_interface(settings.interface);
+  require_security(settings.security);
   const auto id = static_cast<dds_domainid_t>(settings.domain);
   domain_ = domain_of(settings);
   // rmw_cyclonedds shows only participants that state their security enclave.
   constexpr std::string_view enclave = "enclave=/;";
   Qos qos(dds_create_qos());
   dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
+  CycloneErrors& errors = CycloneErrors::of_process();
+  errors.keep();
   participant_ = dds_create_participant(id, qos.get(), nullptr);
+  const std::string error = errors.take_last();
+  if (participant_ < 0 && !settings.security.empty()) {
+    throw InputError("dds.security: " + settings.security + ": " + error +
+                     "; expected valid files of `glint dds keys` for domain " +
+                     std::to_string(settings.domain));
+  }
   if (participant_ < 0) {
     const int code = -participant_;
     throw InputError("dds: cannot join domain " + std::to_string(settings.domain) +

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   app.add_option("--interface", settings.interface, "network interface")->capture_default_str();
   app.add_option("--domain", settings.domain, "DDS domain, ROS_DOMAIN_ID")->capture_default_str();
   app.add_option("--peer", settings.peers, "address for discovery; repeatable");
+  app.add_option("--security", settings.security, "folder with keys and documents");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

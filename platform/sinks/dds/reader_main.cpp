@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   app.add_option("--prefix", settings.topic_prefix, "prefix of the topics")->capture_default_str();
   app.add_option("--tool", settings.tool_names, "tool name; repeatable")->expected(1, 16);
   app.add_option("--peer", settings.peers, "address of the sink; repeatable");
+  app.add_option("--security", settings.security, "folder with keys and documents");
   app.add_option("--search", search_s, "seconds to search for a sink")
       ->capture_default_str()
       ->check(glint::in_range(0.0, 86400.0));

@@ -32,9 +32,41 @@ std::string topic_under(std::string_view prefix, std::string_view name) {
   return "rt/" + ros_name(prefix) + "/" + ros_name(name);
 }
 
-ToolTopics topics_of(std::string_view prefix, std::string_view tool) {
+std::string topic_in(std::string_view space, std::string_view topic) {
+  constexpr std::string_view root = "rt/";
+  if (space.empty()) return std::string(topic);
+  return std::string(root) + ros_name(space) + "/" + std::string(topic.substr(root.size()));
+}
+
+std::vector<std::string> topics_of(DdsInput input, std::string_view prefix,
+                                   std::string_view space) {
+  std::vector<std::string> topics;
+  switch (input) {
+    case DdsInput::joint_states:
+      topics = {k_joint_states_topic};
+      break;
+    case DdsInput::robot_description:
+      topics = {k_robot_description_topic};
+      break;
+    case DdsInput::initial_pose:
+      topics = {k_initial_pose_topic};
+      break;
+    case DdsInput::buttons:
+      for (const char* name : {"button", "button_delete", "button_undo", "button_finish"}) {
+        topics.push_back(topic_under(prefix, name));
+      }
+      break;
+    case DdsInput::tools:
+      topics = {topic_under(prefix, "tool_add"), topic_under(prefix, "tool_remove")};
+      break;
+  }
+  for (std::string& topic : topics) topic = topic_in(space, topic);
+  return topics;
+}
+
+ToolTopics topics_of(std::string_view prefix, std::string_view tool, std::string_view space) {
   const std::string base = ros_name(prefix), name = ros_name(tool);
-  const std::string topic = "rt/" + base + "/" + name;
+  const std::string topic = topic_in(space, "rt/" + base + "/" + name);
   return {topic + "_status", topic + "_pose", topic + "_pose_covariance",
           topic + "_pose_systematic", base + "_" + name + "_tip"};
 }

@@ -6,6 +6,9 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "platform/cells/dds_input.hpp"
 
 namespace glint {
 
@@ -19,11 +22,16 @@ struct ToolTopics {
   std::string pose_systematic;  // rt/PREFIX/TOOL_pose_systematic: its systematic part
   std::string tip_frame;        // PREFIX_TOOL_tip
 };
-[[nodiscard]] ToolTopics topics_of(std::string_view prefix, std::string_view tool);
+// `space`: the namespace of a named run; empty: none. The frame's name is without it.
+[[nodiscard]] ToolTopics topics_of(std::string_view prefix, std::string_view tool,
+                                   std::string_view space = "");
 
 inline constexpr const char* k_tf_topic = "rt/tf";
 inline constexpr const char* k_tf_static_topic = "rt/tf_static";
 inline constexpr const char* k_diagnostics_topic = "rt/diagnostics";
+
+// DDS topic of a named run: "rt/tf" becomes "rt/SPACE/tf"; unchanged without a space.
+[[nodiscard]] std::string topic_in(std::string_view space, std::string_view topic);
 
 // DDS name of a ROS topic: "/ir/image" becomes "rt/ir/image". Empty if the name is invalid.
 [[nodiscard]] std::string dds_topic(std::string_view ros_topic);
@@ -34,11 +42,12 @@ inline constexpr const char* k_map_points_name = "map_points";
 inline constexpr const char* k_octomap_name = "octomap";
 inline constexpr const char* k_path_name = "path";
 
-inline constexpr const char* k_tool_add_name = "tool_add";
-inline constexpr const char* k_tool_remove_name = "tool_remove";
-
 inline constexpr const char* k_joint_states_topic = "rt/joint_states";
 inline constexpr const char* k_robot_description_topic = "rt/robot_description";
 inline constexpr const char* k_initial_pose_topic = "rt/initialpose";
+
+// Topics of an input: buttons in the order of Button, tools that are added and removed.
+[[nodiscard]] std::vector<std::string> topics_of(DdsInput input, std::string_view prefix,
+                                                 std::string_view space);
 
 }  // namespace glint
