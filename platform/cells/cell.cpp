@@ -157,6 +157,11 @@ AllowedInputs allowed_inputs(TomlReader& dds, const std::string& file) {
   return allowed;
 }
 
+RosGraph ros_graph_of(const std::string& name) {
+  if (name == "off") return RosGraph::off;
+  return name == "humble" ? RosGraph::humble : RosGraph::iron;
+}
+
 void read_sinks(TomlReader& root, const CellFileReader& files, Cell& cell) {
   read_can(root.table("can"), cell);
   if (const toml::table* table = root.table("dds")) {
@@ -165,6 +170,8 @@ void read_sinks(TomlReader& root, const CellFileReader& files, Cell& cell) {
     cell.dds.interface = reader.text("interface", cell.dds.interface);
     cell.dds.domain = static_cast<int>(reader.integer("domain", cell.dds.domain, 0, 232));
     cell.dds.allow = allowed_inputs(reader, cell.file);
+    cell.dds.name = reader.text("name", cell.dds.name);
+    cell.dds.ros_graph = ros_graph_of(reader.one_of("ros_graph", "off", {"off", "humble", "iron"}));
     cell.dds.security = files.resolved(reader.text("security", ""), "dds.security");
     reader.done();
   }

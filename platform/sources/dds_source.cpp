@@ -62,10 +62,8 @@ std::unique_ptr<DdsSource> DdsSource::open(Cell& cell, LiveSettings live) {
   }
   (void)checked_topic(source, "camera_info_topic", source.camera_info_topic);
   if (!source.pose_topic.empty()) (void)checked_topic(source, "pose_topic", source.pose_topic);
-  DdsSettings settings;
+  DdsSettings settings = network_of(cell.dds);
   settings.domain = source.domain.value_or(cell.dds.domain);
-  settings.interface = cell.dds.interface;
-  settings.security = cell.dds.security;
   auto process = DdsProcess::of(settings, DdsProcess::k_image_bytes);
   if (!names_lens(cell)) {
     set_lens(cell, lens_from(*process, source.camera_info_topic, live));

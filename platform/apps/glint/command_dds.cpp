@@ -23,7 +23,7 @@ namespace {
 constexpr std::int64_t k_day_s = 24 * 3600;
 
 struct KeyArguments {
-  std::string config, out = "keys";
+  std::string config, name, out = "keys";
   std::vector<std::string> peers;
   int days = 365;
 };
@@ -60,7 +60,9 @@ int write_keys(const KeyArguments& arguments) {
   const std::int64_t now = std::time(nullptr);
   const int of_source = cell.source.domain.value_or(cell.dds.domain);
   const auto [first, last] = std::minmax(cell.dds.domain, of_source);
-  KeySettings settings{arguments.out, {first, last, cell.dds.name, {}}, {}};
+  KeySettings settings{arguments.out,
+                       {first, last, arguments.name.empty() ? cell.dds.name : arguments.name, {}},
+                       {}};
   // A board's clock may be late.
   settings.scope.validity = {now - k_day_s, now + arguments.days * k_day_s};
   for (const std::string& peer : arguments.peers) settings.peers.push_back(peer_of(peer));
@@ -89,6 +91,7 @@ void add_keys(CLI::App& parent, int& exit_code) {
           "peer that may receive all; NAME:INPUT,.. may send these inputs too, named as in "
           "[dds] allow, or topics as /camera/image; repeatable")
       ->allow_extra_args(false);
+  command->add_option("--name", arguments->name, "as of `glint run`; default: the cell's");
   command->add_option("--days", arguments->days, "validity")
       ->check(in_range(1, 3650))
       ->capture_default_str();

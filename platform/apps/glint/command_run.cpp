@@ -51,6 +51,7 @@ struct RunArguments {
   int workers = 0;
   bool as_fast_as_can_be = false;
   bool no_dds = false;
+  std::string name;
   std::string method = "glint";
   std::string board, plan;
   std::vector<std::string> inject;
@@ -76,6 +77,7 @@ Cell cell_of(const RunArguments& arguments) {
   if (arguments.workers > 0) cell.workers = arguments.workers;
   if (arguments.as_fast_as_can_be) cell.realtime = false;
   if (arguments.no_dds) cell.dds.on = false;
+  if (!arguments.name.empty()) cell.dds.name = arguments.name;
   if (arguments.method != "glint") {
     cell.method = Method::baseline;
     cell.record.level = "outputs";  // a run of the baseline cannot be replayed
@@ -267,6 +269,8 @@ void add_run(CLI::App& app, int& exit_code, const BaselineFactory& baseline) {
       ->check(in_range(0.0, 10'000.0));
   command->add_flag("--trace", arguments->trace,
                     "trace of every node's execution: trace.spans in --out");
+  command->add_option("--name", arguments->name,
+                      "namespace of all DDS topics and of the node; default: the cell's");
   command->add_flag("--no-dds", arguments->no_dds, "no output over DDS");
   command->add_flag("--keys", arguments->keys,
                     std::string("keys of this terminal as the pen's buttons: ") + k_keys_text);

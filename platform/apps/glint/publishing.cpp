@@ -21,6 +21,7 @@ void add_network_options(CLI::App& command, DdsSettings& settings) {
   command.add_option("--dds-domain", settings.domain, "ROS_DOMAIN_ID")
       ->check(in_range(0, 232))
       ->capture_default_str();
+  command.add_option("--dds-name", settings.name, "namespace of the topics; default: none");
   command.add_option("--dds-security", settings.security,
                      "folder of `glint dds keys`; default: no DDS Security");
 }

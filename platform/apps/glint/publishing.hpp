@@ -13,7 +13,7 @@ struct PublishOptions {
   DdsSettings settings;
 };
 
-// --dds-interface, --dds-domain, --dds-security.
+// --dds-interface, --dds-domain, --dds-name, --dds-security.
 void add_network_options(CLI::App& command, DdsSettings& settings);
 
 void add_publish_options(CLI::App& command, PublishOptions& options);

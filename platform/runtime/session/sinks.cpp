@@ -47,15 +47,15 @@ double checked_bus_load(const Cell& cell) {
 }
 
 DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
-  DdsSettings settings;
-  settings.domain = cell.dds.domain;
-  settings.interface = cell.dds.interface;
-  settings.security = cell.dds.security;
+  DdsSettings settings = network_of(cell.dds);
   settings.tool_names = names_of(cell.tools);
   settings.button_timeout = cell.button_timeout;
   settings.tick_period = tick_period(cell);
   settings.actuation_delay = cell.actuation_delay;
   settings.unix_minus_session = {unix_offset_ns};
+  for (const NamedFile& file : cell.named_files) {
+    if (file.key == k_urdf_key) settings.robot_description = file.text;
+  }
   if (cell.robot_valid && !cell.robot_in_reference) {
     settings.static_transforms.push_back(
         {settings.frames.world, settings.frames.robot, cell.T_world_robot});

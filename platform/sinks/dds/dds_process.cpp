@@ -57,11 +57,13 @@ std::shared_ptr<DdsProcess> DdsProcess::of(const DdsSettings& settings,
   require_security(settings.security);
   const std::lock_guard lock(open_mutex);
   if (const auto process = open[settings.domain].lock()) {
-    if (cyclone_configuration(process->settings_) == cyclone_configuration(settings)) {
+    const DdsSettings& known = process->settings_;
+    const bool same_node = known.name == settings.name && known.ros_graph == settings.ros_graph;
+    if (same_node && cyclone_configuration(known) == cyclone_configuration(settings)) {
       return process;
     }
     throw InputError("dds.domain: this program uses domain " + std::to_string(settings.domain) +
-                     " with another interface, other peers or other keys; expected the same");
+                     " with another interface, name, other peers or keys; expected the same");
   }
   std::shared_ptr<DdsProcess> process(new DdsProcess(settings, incoming_bytes));
   open[settings.domain] = process;
@@ -88,11 +90,17 @@ void DdsProcess::start() {
   memory_.reset();
   outgoing_.emplace(memory_.state().outgoing, memory_.outgoing());
   incoming_.emplace(memory_.state().incoming, memory_.incoming());
-  std::vector<std::string> arguments = {"glint_dds_participant", "--interface", settings_.interface,
-                                        "--domain", std::to_string(settings_.domain)};
+  std::vector<std::string> arguments = {"glint_dds_participant",
+                                        "--interface",
+                                        settings_.interface,
+                                        "--domain",
+                                        std::to_string(settings_.domain),
+                                        "--ros-graph",
+                                        std::to_string(static_cast<int>(settings_.ros_graph))};
   for (const std::string& peer : settings_.peers) {
     arguments.insert(arguments.end(), {"--peer", peer});
   }
+  if (!settings_.name.empty()) arguments.insert(arguments.end(), {"--name", settings_.name});
   if (!settings_.security.empty()) {
     arguments.insert(arguments.end(), {"--security", settings_.security});
   }

@@ -40,6 +40,7 @@ struct DdsSettings {
   RosGraph ros_graph = RosGraph::off;
   std::vector<std::string> tool_names = {"pen"};  // element i names PoseSample::tool i
   FrameNames frames;
+  std::string robot_description;                   // URDF; empty: not published
   std::vector<StaticTransform> static_transforms;  // all of tf_static
   Duration tick_period = milliseconds(4);
   Duration actuation_delay;  // from a tick to the time for which its pose is valid
@@ -61,5 +62,9 @@ struct DdsSettings {
   // Estimated calibration errors (null: not monitored; must outlive the sink).
   const CalibrationFindingsStore* calibration = nullptr;
 };
+
+// Domain, interface, security, name and graph of a cell's [dds].
+struct DdsCellSettings;
+[[nodiscard]] DdsSettings network_of(const DdsCellSettings& cell);
 
 }  // namespace glint

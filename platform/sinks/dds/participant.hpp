@@ -41,6 +41,7 @@ class Participant {
   dds_entity_t writer(const TopicType& type, const std::string& topic, const Quality& quality);
   dds_entity_t reader(const TopicType& type, const std::string& topic, const Quality& quality);
   dds_entity_t waitset();
+  [[nodiscard]] dds_entity_t entity() const noexcept { return participant_; }
 
  private:
   struct Domain;

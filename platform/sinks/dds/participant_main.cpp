@@ -52,6 +52,8 @@ int main(int argc, char** argv) {
   app.add_option("--interface", settings.interface, "network interface")->capture_default_str();
   app.add_option("--domain", settings.domain, "DDS domain, ROS_DOMAIN_ID")->capture_default_str();
   app.add_option("--peer", settings.peers, "address for discovery; repeatable");
+  app.add_option("--name", settings.name, "namespace of the node; default: none");
+  app.add_option("--ros-graph", settings.ros_graph, "release of ROS 2 that shows the node");
   app.add_option("--security", settings.security, "folder with keys and documents");
   try {
     app.parse(argc, argv);

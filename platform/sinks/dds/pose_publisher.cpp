@@ -8,6 +8,7 @@
 #include "platform/input_error.hpp"
 #include "platform/sinks/dds/diagnostics.hpp"
 #include "platform/sinks/dds/tick_gap.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
 
 namespace glint {
 namespace {
@@ -18,7 +19,8 @@ constexpr Quality k_status_quality{Reliability::reliable, Durability::volatile_d
 constexpr Quality k_pose_quality{Reliability::reliable, Durability::volatile_data, 1};
 // Same QoS as tf2's broadcasters and diagnostic_updater.
 constexpr Quality k_tf_quality{Reliability::reliable, Durability::volatile_data, 100};
-constexpr Quality k_tf_static_quality{Reliability::reliable, Durability::transient_local, 1};
+// As tf2's static broadcaster and robot_state_publisher: late readers receive the newest message.
+constexpr Quality k_latched_quality{Reliability::reliable, Durability::transient_local, 1};
 constexpr Quality k_diagnostics_quality{Reliability::reliable, Durability::volatile_data, 1};
 
 // A restart and the search for the readers, at the end of a run.
@@ -34,6 +36,10 @@ void check(const DdsSettings& settings) {
     throw InputError("dds: found a tick period of " +
                      std::to_string(settings.tick_period.nanoseconds) +
                      " ns; expected 1 ns to 1 s");
+  }
+  if (!settings.name.empty() && settings.name != ros_name(settings.name)) {
+    throw InputError("dds.name: \"" + settings.name +
+                     "\"; expected letters, digits and '_', no digit first");
   }
   std::set<std::string> names;
   for (const std::string& name : settings.tool_names) {
@@ -51,7 +57,7 @@ PosePublisher::PosePublisher(const DdsSettings& settings)
   for (const std::string& name : settings_.tool_names) {
     ToolStream stream;
     stream.name = name;
-    stream.topics = topics_of(settings_.topic_prefix, name);
+    stream.topics = topics_of(settings_.topic_prefix, name, settings_.name);
     stream.status = process_->writer(status_type(), stream.topics.status, k_status_quality);
     stream.pose = process_->writer(pose_stamped_type(), stream.topics.pose, k_pose_quality);
     stream.pose_covariance =
@@ -60,10 +66,17 @@ PosePublisher::PosePublisher(const DdsSettings& settings)
         process_->writer(pose_covariance_type(), stream.topics.pose_systematic, k_pose_quality);
     streams_.push_back(std::move(stream));
   }
-  tf_ = process_->writer(tf_type(), k_tf_topic, k_tf_quality);
-  tf_static_ = process_->writer(tf_type(), k_tf_static_topic, k_tf_static_quality);
-  diagnostics_ = process_->writer(diagnostics_type(), k_diagnostics_topic, k_diagnostics_quality);
+  const auto add = [this](const TopicType& type, const char* topic, const Quality& quality) {
+    return process_->writer(type, topic_in(settings_.name, topic), quality);
+  };
+  tf_ = add(tf_type(), k_tf_topic, k_tf_quality);
+  tf_static_ = add(tf_type(), k_tf_static_topic, k_latched_quality);
+  diagnostics_ = add(diagnostics_type(), k_diagnostics_topic, k_diagnostics_quality);
   write_static_transforms();
+  if (settings_.robot_description.empty()) return;
+  description_ = add(text_type(), k_robot_description_topic, k_latched_quality);
+  const TextMessage description{settings_.robot_description.data()};
+  write_unreliable(*description_, &description);
 }
 
 PosePublisher::~PosePublisher() {
@@ -92,6 +105,7 @@ ProcessCounts PosePublisher::process_counts() const {
 
 std::vector<int> PosePublisher::writers() const {
   std::vector<int> all{tf_, tf_static_, diagnostics_};
+  if (description_) all.push_back(*description_);
   for (const ToolStream& stream : streams_) {
     all.insert(all.end(),
                {stream.status, stream.pose, stream.pose_covariance, stream.pose_systematic});

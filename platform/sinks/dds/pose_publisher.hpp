@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,7 @@ class PosePublisher {
   std::vector<ToolStream> streams_;
   std::uint64_t others_failed_ = 0;
   int tf_ = 0, tf_static_ = 0, diagnostics_ = 0;
+  std::optional<int> description_;      // writer of robot_description
   std::uint64_t faults_published_ = 0;  // of a live source
 };
 

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   app.add_option("--interface", settings.interface, "network interface")->capture_default_str();
   app.add_option("--domain", settings.domain, "DDS domain, ROS_DOMAIN_ID")->capture_default_str();
   app.add_option("--prefix", settings.topic_prefix, "prefix of the topics")->capture_default_str();
+  app.add_option("--name", settings.name, "namespace of the topics; default: none");
   app.add_option("--tool", settings.tool_names, "tool name; repeatable")->expected(1, 16);
   app.add_option("--peer", settings.peers, "address of the sink; repeatable");
   app.add_option("--security", settings.security, "folder with keys and documents");

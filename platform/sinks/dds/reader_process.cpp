@@ -27,6 +27,7 @@ std::vector<std::string> arguments_of(const DdsSettings& settings, const std::st
   for (const std::string& peer : settings.peers) {
     arguments.insert(arguments.end(), {"--peer", peer});
   }
+  if (!settings.name.empty()) arguments.insert(arguments.end(), {"--name", settings.name});
   if (!settings.security.empty()) {
     arguments.insert(arguments.end(), {"--security", settings.security});
   }

@@ -39,6 +39,7 @@ Object object_of(std::span<const std::uint8_t> bytes) {
 
 ServedEndpoints::ServedEndpoints(const DdsSettings& settings, SharedMemory& memory)
     : participant_(settings),
+      node_(participant_, settings),
       memory_(&memory),
       outgoing_(memory.state().outgoing, memory.outgoing()),
       incoming_(memory.state().incoming, memory.incoming()) {
@@ -96,6 +97,7 @@ void ServedEndpoints::apply(const RingRecord& record) {
     case RecordKind::remove:
       if (endpoint.entity != 0) dds_delete(endpoint.entity);
       endpoint.entity = 0;
+      endpoints_changed_ = true;
       return;
     case RecordKind::flush:
       return flush(object_of<Flush>(bytes_));
@@ -112,6 +114,7 @@ void ServedEndpoints::create(Endpoint& endpoint) {
   if (!type) throw std::runtime_error("a topic of an unknown type");
   endpoint.type = *type;
   endpoint.created_at = dds_time();
+  endpoints_changed_ = true;
   const std::string topic = endpoint.created.topic.data();
   if (endpoint.created.is_writer) {
     endpoint.entity = participant_.writer(*type, topic, endpoint.created.quality);
@@ -215,6 +218,7 @@ void ServedEndpoints::update_states() {
   const dds_time_t now = dds_time();
   if (now < states_due_) return;
   states_due_ = now + k_state_period;
+  if (endpoints_changed_) publish_node();
   for (Endpoint& endpoint : endpoints_) {
     if (endpoint.entity == 0) continue;
     if (endpoint.created.is_writer) {
@@ -231,6 +235,16 @@ void ServedEndpoints::update_states() {
     dds_get_requested_incompatible_qos_status(endpoint.entity, &incompatible);
     endpoint.state->incompatible = incompatible.total_count;
   }
+}
+
+void ServedEndpoints::publish_node() {
+  endpoints_changed_ = false;
+  std::vector<dds_entity_t> readers, writers;
+  for (const Endpoint& endpoint : endpoints_) {
+    if (endpoint.entity == 0) continue;
+    (endpoint.created.is_writer ? writers : readers).push_back(endpoint.entity);
+  }
+  node_.publish(readers, writers);
 }
 
 void ServedEndpoints::update_writer(Endpoint& endpoint) {

@@ -15,6 +15,7 @@
 
 #include "platform/sinks/dds/participant.hpp"
 #include "platform/sinks/dds/process_memory.hpp"
+#include "platform/sinks/dds/ros_node.hpp"
 
 namespace glint {
 
@@ -35,7 +36,7 @@ class ServedEndpoints {
   void wait(std::uint32_t seen, Duration limit);
   // Value for wait(), to be read before work().
   [[nodiscard]] std::uint32_t signals() const;
-  // Publishes the endpoints' states; releases writers that waited for their readers.
+  // Publishes the node and the endpoints' states; releases writers that waited for their readers.
   void update_states();
   [[nodiscard]] bool ended() const { return ended_; }
 
@@ -60,9 +61,12 @@ class ServedEndpoints {
                 const dds_sample_info_t& info);
   void report_left_senders(std::uint16_t number, Endpoint& endpoint);
   void update_writer(Endpoint& endpoint);
+  void publish_node();
   static void on_message(dds_entity_t reader, void* endpoint) noexcept;
 
   Participant participant_;
+  RosNode node_;
+  bool endpoints_changed_ = true;  // since the node was published
   SharedMemory* memory_;
   RingConsumer outgoing_;
   RingProducer incoming_;

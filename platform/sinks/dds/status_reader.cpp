@@ -38,7 +38,7 @@ void take_all(dds_entity_t reader, Use use) {
 StatusReader::StatusReader(const DdsSettings& settings) : participant_(settings) {
   waitset_ = participant_.waitset();
   for (const std::string& name : settings.tool_names) {
-    const ToolTopics topics = topics_of(settings.topic_prefix, name);
+    const ToolTopics topics = topics_of(settings.topic_prefix, name, settings.name);
     ToolReader tool;
     // Created first: a sink that has discovered the status reader has then discovered this one too.
     tool.pose = participant_.reader(pose_stamped_type(), topics.pose, k_everything);

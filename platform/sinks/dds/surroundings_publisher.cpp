@@ -55,6 +55,10 @@ dds_entity_t MapPublisher::add_writer(const TopicType& type, const std::string& 
   return writer;
 }
 
+std::string MapPublisher::own_topic(const char* name) const {
+  return topic_in(settings_.name, topic_under(settings_.topic_prefix, name));
+}
+
 void MapPublisher::write(dds_entity_t writer, const void* message, const std::string& what) {
   const dds_return_t code = dds_write(writer, message);
   if (code != DDS_RETCODE_OK) {
@@ -69,8 +73,7 @@ std::size_t MapPublisher::publish_cloud(FloatTriples points, FloatTriples normal
   const std::size_t messages_needed = (points.size() + points_per_message - 1) / points_per_message;
   const std::size_t messages = std::min(messages_needed, std::size_t{k_cloud_messages_max});
   const dds_entity_t writer =
-      add_writer(cloud_type(), topic_under(settings_.topic_prefix, k_map_points_name),
-                 static_cast<int>(messages));
+      add_writer(cloud_type(), own_topic(k_map_points_name), static_cast<int>(messages));
   std::vector<PointFieldMessage> fields = fields_of(with_normals);
   for (std::size_t i = 0; i < messages; ++i) {
     const std::size_t first = i * points_per_message,
@@ -98,8 +101,7 @@ void MapPublisher::publish_octomap(std::span<const std::int8_t> data, double res
     throw InputError("octomap: " + std::to_string(data.size()) +
                      " bytes; expected at most 16 MiB in one message: set a coarser resolution");
   }
-  const dds_entity_t writer =
-      add_writer(octomap_type(), topic_under(settings_.topic_prefix, k_octomap_name), 1);
+  const dds_entity_t writer = add_writer(octomap_type(), own_topic(k_octomap_name), 1);
   std::vector<std::int8_t> bytes(data.begin(), data.end());
   OctomapMessage message{};
   message.header = header_message(unix_time, settings_.frames.world.c_str());
@@ -112,8 +114,7 @@ void MapPublisher::publish_octomap(std::span<const std::int8_t> data, double res
 
 void MapPublisher::publish_path(std::span<const UncertainPose> points, Duration unix_minus_session,
                                 Time unix_time) {
-  const dds_entity_t writer =
-      add_writer(path_type(), topic_under(settings_.topic_prefix, k_path_name), 1);
+  const dds_entity_t writer = add_writer(path_type(), own_topic(k_path_name), 1);
   const char* const frame = settings_.frames.robot.c_str();
   std::vector<PoseStampedMessage> poses;
   poses.reserve(points.size());
@@ -128,7 +129,7 @@ void MapPublisher::publish_path(std::span<const UncertainPose> points, Duration 
 }
 
 void MapPublisher::publish_static(std::span<const StaticTransform> transforms, Time unix_time) {
-  const dds_entity_t writer = add_writer(tf_type(), k_tf_static_topic, 1);
+  const dds_entity_t writer = add_writer(tf_type(), topic_in(settings_.name, k_tf_static_topic), 1);
   std::vector<TransformMessage> messages;
   for (const StaticTransform& one : transforms) {
     messages.push_back(transform_message(header_message(unix_time, one.parent.c_str()),

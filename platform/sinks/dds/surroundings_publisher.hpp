@@ -51,6 +51,7 @@ class MapPublisher {
 
  private:
   dds_entity_t add_writer(const TopicType& type, const std::string& topic, int depth);
+  [[nodiscard]] std::string own_topic(const char* name) const;
   void write(dds_entity_t writer, const void* message, const std::string& what);
 
   DdsSettings settings_;

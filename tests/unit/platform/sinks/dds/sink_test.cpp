@@ -232,6 +232,25 @@ TEST_F(Sinks, GiveALateListenerAllStaticTransforms) {
   EXPECT_EQ(children, (std::set<std::string>{"hmd_tof_optical", "robot_base"}));
 }
 
+TEST_F(Sinks, SendALateReaderTheRobotDescription) {
+  DdsSettings settings = test_settings();
+  settings.robot_description = "<robot name=\"arm\">" + std::string(300'000, ' ') + "</robot>";
+  DdsSink sink(settings);
+  sink.start();
+  sink.offer(sample_at(1));
+  Peer peer(settings);
+  // As RViz's RobotModel display.
+  const dds_entity_t reader = peer.reader(text_type(), "rt/robot_description",
+                                          Reliability::reliable, Durability::transient_local, 1);
+  EXPECT_EQ(take<TextMessage>(reader, 1,
+                              [&](const TextMessage& message) {
+                                EXPECT_EQ(message.data, settings.robot_description);
+                              }),
+            1u);
+  sink.stop();
+  EXPECT_EQ(sink.counts().lost(), 0u);
+}
+
 TEST_F(Sinks, TellWhereARobotThatIsFollowedNowStandsBesideTheOtherStaticTransforms) {
   DdsSettings settings = test_settings();
   Pose robot;
