@@ -175,6 +175,14 @@ void read_sinks(TomlReader& root, const CellFileReader& files, Cell& cell) {
     cell.dds.security = files.resolved(reader.text("security", ""), "dds.security");
     reader.done();
   }
+  if (const toml::table* table = root.table("openigtlink")) {
+    TomlReader reader(*table, cell.file, "openigtlink.");
+    OpenIgtLinkSettings& server = cell.openigtlink.emplace();
+    server.address = reader.text("address", server.address);
+    server.port = static_cast<int>(reader.integer("port", server.port, 1, 65535));
+    server.period = from_ms(reader.real("period_ms", 20, 1, 1000));
+    reader.done();
+  }
   if (const toml::table* table = root.table("buttons")) {
     TomlReader reader(*table, cell.file, "buttons.");
     cell.button_timeout = from_ms(reader.real("timeout_ms", 10'000, 100, 3'600'000));

@@ -145,6 +145,12 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
           (result.dds.process_restarts == 0
                ? ""
                : "; process restarted " + std::to_string(result.dds.process_restarts) + " times"));
+  if (const auto& server = result.openigtlink) {
+    row("OpenIGTLink", std::to_string(server->sent) + " messages to " +
+                           std::to_string(server->clients) + " clients, " +
+                           std::to_string(server->lost()) + " lost; " +
+                           std::to_string(server->refused) + " clients refused");
+  }
   if (const ReceivedCounts& received = result.dds_received; received.any()) {
     row("received over DDS", std::to_string(received.joints) + " joint states, " +
                                  std::to_string(received.descriptions) + " descriptions, " +

@@ -209,6 +209,15 @@ ordered_json summary_of(const Cell& cell, const RunSchedule& plan, const Session
       {"budget", budget_of(plan, result)}};
   summary["can_input"]["released"] = result.can_received.released;
   summary["dds_input"]["released"] = result.dds_received.released;
+  if (const auto& server = result.openigtlink) {
+    summary["openigtlink"] = {{"offered", server->offered},
+                              {"messages", server->messages},
+                              {"sent", server->sent},
+                              {"missed", server->missed},
+                              {"ring_dropped", server->ring_dropped},
+                              {"clients", server->clients},
+                              {"refused", server->refused}};
+  }
   summary["dds_tool_changes"] = tool_orders(cell, result);
   if (result.background) summary["background"] = as_json(*result.background);
   return summary;

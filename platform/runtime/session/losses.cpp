@@ -106,6 +106,18 @@ void add_headset(const HeadsetCounts& headset, Losses& losses) {
   }
 }
 
+void add_openigtlink(const OpenIgtLinkCounts& counts, Losses& losses) {
+  constexpr std::string_view k_kind = "OpenIGTLink";
+  if (counts.missed > 0) {
+    losses.add(k_kind, counts.missed,
+               counted(counts.missed, "messages not sent: a client reads too slowly"));
+  }
+  if (counts.ring_dropped > 0) {
+    losses.add(k_kind, counts.ring_dropped,
+               counted(counts.ring_dropped, "samples not taken, queue full"));
+  }
+}
+
 }  // namespace
 
 std::vector<Loss> losses_of(const SinkOutcome& outcome) {
@@ -119,6 +131,7 @@ std::vector<Loss> losses_of(const SinkOutcome& outcome) {
                counted(outcome.files_lost, "lines not written: ") + why);
   }
   if (outcome.headset) add_headset(*outcome.headset, losses);
+  if (outcome.openigtlink) add_openigtlink(*outcome.openigtlink, losses);
   for (const std::string& file : outcome.not_written) losses.add(LossKind::files, 0, cause(file));
   return losses.take();
 }

@@ -10,7 +10,7 @@
 namespace glint {
 
 struct Loss {
-  std::string kind;         // name of the LossKind, or headset
+  std::string kind;         // name of the LossKind, headset or OpenIGTLink
   std::uint64_t count = 0;  // frames, messages or lines; 0: unknown
   std::string text;         // what was lost and why
 };

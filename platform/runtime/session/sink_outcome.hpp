@@ -15,6 +15,7 @@
 #include "platform/sinks/dds/dds_sink.hpp"
 #include "platform/sinks/dds/reader_result.hpp"
 #include "platform/sinks/headset/headset_output.hpp"
+#include "platform/sinks/openigtlink/openigtlink_sink.hpp"
 #include "platform/sinks/record/derived_messages.hpp"
 #include "platform/sinks/record/message_observer.hpp"
 #include "platform/sinks/record/recording.hpp"
@@ -51,10 +52,11 @@ struct SinkOutcome {
   ReaderResult dds_reader;
   bool dds_was_read = false;
   std::string dds_reader_error;  // why the reader process has no result, if there was one
-  std::shared_ptr<const OutputByRate> by_rate;  // null: not requested
-  std::optional<HeadsetCounts> headset;         // null: not requested
-  std::uint64_t files_lost = 0;                 // lines missing in TUM and CSV files
-  std::string files_error;                      // first write error of these
+  std::shared_ptr<const OutputByRate> by_rate;   // null: not requested
+  std::optional<HeadsetCounts> headset;          // null: not requested
+  std::optional<OpenIgtLinkCounts> openigtlink;  // null: no server
+  std::uint64_t files_lost = 0;                  // lines missing in TUM and CSV files
+  std::string files_error;                       // first write error of these
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;

@@ -116,6 +116,12 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     }
   }
 
+  if (cell.openigtlink && cell.realtime) {
+    openigtlink_ = std::make_unique<OpenIgtLinkSink>(OpenIgtLinkOptions{
+        *cell.openigtlink, names_of(cell.tools), {unix_offset_ns}, cell.actuation_delay});
+    openigtlink_->start();
+  }
+
   // A run that is faster than real time would only overrun its DDS readers.
   if (cell.dds.on && cell.realtime) {
     DdsSettings settings = dds_settings(cell, unix_offset_ns);
@@ -172,6 +178,10 @@ void Sinks::close(SinkOutcome& result) {
     result.dds_received = inputs_->counts();
     result.tool_change_counts = tool_change_counts_;
     inputs_.reset();  // the sink leaves the domain when nothing else holds it
+  }
+  if (openigtlink_ != nullptr) {
+    openigtlink_->stop();
+    result.openigtlink = openigtlink_->counts();
   }
   if (files_ != nullptr) {
     result.files_error = files_->close();

@@ -33,6 +33,7 @@ class Sinks {
 
   [[nodiscard]] CanSink* can() noexcept { return can_.get(); }
   [[nodiscard]] DdsSink* dds() noexcept { return dds_.get(); }
+  [[nodiscard]] OpenIgtLinkSink* openigtlink() noexcept { return openigtlink_.get(); }
   // Inputs from the same DDS domain; null if there are none.
   [[nodiscard]] DdsInputs* inputs() noexcept { return inputs_.get(); }
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
@@ -83,6 +84,7 @@ class Sinks {
   std::unique_ptr<Recorder> recorder_;  // outlives the threads that offer to it
   std::unique_ptr<FileSink> files_;
   std::unique_ptr<CanSink> can_;
+  std::unique_ptr<OpenIgtLinkSink> openigtlink_;
   std::unique_ptr<CanButtons> buttons_;
   std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;

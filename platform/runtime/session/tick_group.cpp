@@ -123,6 +123,7 @@ void TickGroup::offer_samples() noexcept {
     ++records_;
     if (sinks_.lane != nullptr) (void)sinks_.lane->offer_output(sample, record);
     if (sinks_.dds != nullptr) (void)sinks_.dds->offer(sample);
+    if (sinks_.openigtlink != nullptr) (void)sinks_.openigtlink->offer(sample);
     if (sinks_.files != nullptr) sinks_.files->offer(sample, newest);
     if (sinks_.record) sinks_.record(record);
     if (sinks_.headset != nullptr) {

@@ -38,6 +38,7 @@ struct TickSinks {
   // Called with each output record; a replay compares it.
   std::function<void(std::span<const std::uint8_t>)> record{};
   HeadsetOutput* headset = nullptr;
+  PoseOutput* openigtlink = nullptr;
 };
 
 class TickGroup {
