@@ -19,6 +19,8 @@ namespace {
 constexpr dds_duration_t k_blocking_max = DDS_MSECS(10);
 constexpr int k_domain_max = 232;  // highest with ports within 16 bits (DDSI-RTPS 2.2, 9.6.1)
 
+constexpr std::size_t k_reason_max = 100;  // of Cyclone's text, which ends with OpenSSL's
+
 struct FreeQos {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
 };
@@ -153,7 +155,7 @@ Participant::Participant(const DdsSettings& settings) {
   CycloneErrors& errors = CycloneErrors::of_process();
   errors.keep();
   participant_ = dds_create_participant(id, qos.get(), nullptr);
-  const std::string error = errors.take_last();
+  const std::string error = errors.take_last().substr(0, k_reason_max);
   if (participant_ < 0 && !settings.security.empty()) {
     throw InputError("dds.security: " + settings.security + ": " + error +
                      "; expected valid files of `glint dds keys` for domain " +
