@@ -100,7 +100,7 @@ std::string words_of(std::string_view name) {
 }
 
 CanMessage own_frame(const CanMessageLayout& message, const Cell& cell, int tool) {
-  const std::int64_t tick_ns = static_cast<std::int64_t>(1e9 / cell.tick_hz);
+  const std::int64_t tick_ns = shortest_tick_gap_of(cell).nanoseconds;
   const CanAddress address{cell.can.base_id, static_cast<std::uint32_t>(cell.can.node)};
   CanMessage frame;
   frame.name = words_of(message.name);

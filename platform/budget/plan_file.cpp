@@ -59,7 +59,7 @@ class PlanParser {
     plan_.bus.data =
         static_cast<double>(reader.integer("data_bit_rate", 4'000'000, 10'000, 8'000'000));
     plan_.traffic.tools = static_cast<int>(reader.integer("tools", 1, 1, k_tools_max));
-    plan_.traffic.tick_hz = reader.real("tick_hz", 250, 1, 1000);
+    plan_.traffic.tick_hz = reader.real("tick_hz", 250, 1, 1600);
     reader.done();
     if (const auto complaint = check_bus_load(plan_.traffic, plan_.bus)) {
       CanTraffic fits = plan_.traffic;

@@ -18,10 +18,6 @@ std::string signature_of(std::uint64_t signature) {
   return text;
 }
 
-std::int64_t tick_period_ns(const Cell& cell) {
-  return static_cast<std::int64_t>(1e9 / cell.tick_hz);
-}
-
 }  // namespace
 
 TaskModel task_structure_of(const Cell& cell) {
@@ -35,7 +31,7 @@ TaskModel task_structure_of(const Cell& cell) {
   frame.nodes = task_nodes_of<Tracker>();
   TaskGroup tick;
   tick.name = "tick";
-  tick.min_gap_ns = tick_period_ns(cell);
+  tick.min_gap_ns = shortest_tick_gap_of(cell).nanoseconds;
   tick.deadline_ns = cell.deadlines.tick.nanoseconds;
   tick.can_writes = can_frames_per_tick_max(cell, cell.tools.count);
   tick.nodes = task_nodes_of<Output>();
@@ -88,7 +84,7 @@ std::string graphs_signature(const TaskModel& model) {
 }
 
 CanTraffic traffic_of(const Cell& cell) {
-  return {cell.tools.count, cell.tick_hz, cell.can.format};
+  return {cell.tools.count, highest_tick_hz_of(cell), cell.can.format};
 }
 
 CanBitRates bit_rates_of(const Cell& cell) {

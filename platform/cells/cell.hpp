@@ -118,6 +118,12 @@ struct OverrunSettings {
   graph::OverrunPolicy tick = graph::OverrunPolicy::hold_last;
 };
 
+// What releases the ticks beside their period.
+enum class TickRelease : std::uint8_t {
+  clock,     // nothing
+  estimate,  // each frame's estimate with a measured tool; see session/tick_releases.hpp
+};
+
 // Problem size: limits of the nodes, and basis of the latency bounds.
 struct BudgetSettings {
   int tools = 0;            // at least the number of listed tools
@@ -170,6 +176,7 @@ struct Cell {
   HeadNoise head_noise;  // of the headset's own localisation
   bool realtime = true;  // frames arrive at their time; false: as fast as possible
   double tick_hz = 250;
+  TickRelease tick_release = TickRelease::clock;
   Duration lost_after = k_lost_after;
   Duration actuation_delay;
   int workers = 2;
@@ -213,6 +220,20 @@ struct SourceLens {
 void set_lens(Cell& cell, SourceLens lens);
 // Throws InputError if the camera has no lens.
 void require_lens(const Cell& cell);
+
+// Longest gap between two ticks.
+[[nodiscard]] inline Duration tick_period_of(const Cell& cell) {
+  return {static_cast<std::int64_t>(1e9 / cell.tick_hz)};
+}
+// Shortest one. A controller rejects a set that comes less than half a period after the last one;
+// an eighth of the period remains for the delays on the bus.
+[[nodiscard]] inline Duration shortest_tick_gap_of(const Cell& cell) {
+  const Duration period = tick_period_of(cell);
+  return cell.tick_release == TickRelease::clock ? period : Duration{period.nanoseconds * 5 / 8};
+}
+[[nodiscard]] inline double highest_tick_hz_of(const Cell& cell) {
+  return cell.tick_release == TickRelease::clock ? cell.tick_hz : cell.tick_hz * 8 / 5;
+}
 
 // Returns the limits of all nodes of the cell's graphs.
 [[nodiscard]] Limits limits_of(const Cell& cell);

@@ -23,6 +23,9 @@ void read_rates(const toml::table* table, Cell& cell) {
   TomlReader reader(*table, cell.file, "rates.");
   cell.realtime = reader.boolean("realtime", cell.realtime);
   cell.tick_hz = reader.real("tick_hz", cell.tick_hz, 1, 1000);
+  cell.tick_release = reader.one_of("tick_release", "clock", {"clock", "estimate"}) == "estimate"
+                          ? TickRelease::estimate
+                          : TickRelease::clock;
   cell.workers = static_cast<int>(reader.integer("workers", cell.workers, 1, 2));
   cell.lost_after = milliseconds(reader.integer("lost_after_ms", 250, 1, 400));
   cell.actuation_delay = {
@@ -34,7 +37,8 @@ void read_rates(const toml::table* table, Cell& cell) {
 void read_deadlines(const toml::table* table, Cell& cell) {
   static const toml::table k_empty;
   TomlReader reader(table != nullptr ? *table : k_empty, cell.file, "deadlines.");
-  const double frame_ms = cell.camera.period.seconds() * 1e3, tick_ms = 1e3 / cell.tick_hz;
+  const double frame_ms = cell.camera.period.seconds() * 1e3;
+  const double tick_ms = 1e3 / highest_tick_hz_of(cell);
   const auto read = [&](const char* key, double otherwise, double high) {
     return from_ms(reader.real(key, otherwise, 0.001, high));
   };

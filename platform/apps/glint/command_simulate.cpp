@@ -67,7 +67,7 @@ int simulate(const SimulateArguments& arguments) {
   if (!arguments.without_pixels) {
     RecordingInfo info;
     info.level = RecordingLevel::full;
-    info.nominal_tick = {static_cast<std::int64_t>(1e9 / cell.tick_hz)};
+    info.nominal_tick = tick_period_of(cell);
     info.attachments = attachments_of(cell);
     recording = std::make_unique<RecordingWriter>(in_folder("frames.mcap"), info);
   }

@@ -221,6 +221,42 @@ TEST(BusFrames, CarryWhatTheCellSendsAndNoIdentifierTwice) {
   for (const CanMessage& frame : own) EXPECT_TRUE(frame.fifo);
 }
 
+// Check of the flat board with these lines of a cell.
+CheckResult check_of(const std::string& lines) {
+  Fixture fixture;
+  fixture.cell = cell_from_text(lines, "cell.toml");
+  return check(fixture.input(), {});
+}
+
+std::int64_t sampling_ns(const CheckResult& result) {
+  for (const ChainStage& stage : result.assessment.chains.at(0).stages) {
+    if (stage.name == "sampling") return stage.ns;
+  }
+  return 0;
+}
+
+TEST(Check, CountsATickEachShortestGapWhereEstimatesReleaseThem) {
+  const std::string estimate = "[rates]\ntick_release = \"estimate\"\n";
+  const CheckResult by_clock = check_of(""), by_estimates = check_of(estimate);
+  EXPECT_TRUE(by_estimates.fails.empty()) << by_estimates.fails.front();
+  EXPECT_EQ(sampling_ns(by_clock), 4'000'000);
+  EXPECT_EQ(sampling_ns(by_estimates), 2'500'000);
+  EXPECT_EQ(by_estimates.assessment.groups[1].deadline_ns, 2'500'000);
+  EXPECT_LT(by_estimates.assessment.chains[0].total_ns, by_clock.assessment.chains[0].total_ns);
+  // Heartbeat, time and emergencies keep their gaps.
+  EXPECT_GT(by_estimates.bus_load, by_clock.bus_load * 1.55);
+  EXPECT_LT(by_estimates.bus_load, by_clock.bus_load * 1.60);
+}
+
+TEST(Check, FailsOnABusThatCannotCarryASetEachShortestGap) {
+  const std::string bus = "[can]\nbit_rate = 250_000\n";
+  EXPECT_LT(check_of(bus).bus_load, 1);
+  const CheckResult result = check_of(bus + "[rates]\ntick_release = \"estimate\"\n");
+  EXPECT_GT(result.bus_load, 1);
+  ASSERT_FALSE(result.fails.empty());
+  EXPECT_EQ(result.fails.front(), "CAN frame tool 1 position: bound none, deadline 2500.0 us");
+}
+
 std::string refusal(const std::string& text) {
   try {
     (void)foreign_frames_from_text(text, "foreign.toml", own_frames_of(default_cell(), 1));
