@@ -106,7 +106,11 @@ void FrameGroupOf<G>::process(const ArrivedFrame& arrived, const ChoiceRecord* r
 
 template <class G>
 void FrameGroupOf<G>::publish() noexcept {
-  estimates_.publish(group_.choice().activation, now_().nanoseconds);
+  const MeasuredEstimate published{group_.choice().activation, now_()};
+  estimates_.publish(published.version, published.published.nanoseconds);
+  if (measured_ != nullptr && !overrun_.happened() && has_measurement(*newest_)) {
+    measured_->publish(published);
+  }
 }
 
 template <class G>

@@ -11,6 +11,7 @@
 #include "platform/runtime/session/frame_source.hpp"
 #include "platform/runtime/session/group_runner.hpp"
 #include "platform/runtime/session/release_records.hpp"
+#include "platform/runtime/session/tick_releases.hpp"
 #include "platform/sinks/dds/pose_output.hpp"
 #include "platform/sinks/record/recorder.hpp"
 
@@ -40,6 +41,10 @@ class FrameGroupOf {
   // Publishes the headset's pose to `dds` after each frame's estimates, and the robot's pose if the
   // robot is mounted on the reference body; null: publishes neither.
   void publish_transforms_to(PoseOutput* dds) noexcept { dds_ = dds; }
+
+  // Announces each estimate with a measured tool to `measured` as soon as it is published; null:
+  // announces none.
+  void announce_to(MeasuredEstimates* measured) noexcept { measured_ = measured; }
 
   // Publishes the estimates before it offers anything to the recorder: latency first. After an
   // overrun, publishes the policy's substitute. In a replay, `recorded` decides instead of the
@@ -80,6 +85,7 @@ class FrameGroupOf {
   GroupRunner<G>* runner_;
   RecorderLane* lane_;
   PoseOutput* dds_ = nullptr;
+  MeasuredEstimates* measured_ = nullptr;
   bool robot_on_body_;
   Pose T_body_robot_;  // in the reference body's frame
   Duration lost_after_;

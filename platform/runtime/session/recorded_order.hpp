@@ -48,9 +48,12 @@ class RecordedOrder {
   // released, and a tick that finds other estimates is counted.
   static constexpr std::size_t k_frames_queued_max = 64, k_ticks_queued_max = 1024;
 
-  // Calls `on_output` with each recorded output record.
-  RecordedOrder(RecordingReader& reader, std::function<void(OutputMessage&)> on_output)
-      : reader_(reader), on_output_(std::move(on_output)) {}
+  // Calls `on_output` with each recorded output record. `cell`: the recorded one.
+  RecordedOrder(const Cell& cell, RecordingReader& reader,
+                std::function<void(OutputMessage&)> on_output)
+      : by_clock_(cell.tick_release == TickRelease::clock),
+        reader_(reader),
+        on_output_(std::move(on_output)) {}
 
   // Robot pose and buttons that the ticks read; published before next() returns the tick.
   RecordedVersions<RobotFrame> robot;
@@ -67,9 +70,7 @@ class RecordedOrder {
       ticks_.pop_front();
       robot.publish(tick_.versions[1]);
       buttons.publish(tick_.versions[2]);
-      // Skipped ticks have numbers too.
-      const auto number = tick_.nominal.nanoseconds / reader_.nominal_tick().nanoseconds;
-      release = {tick_.nominal, nullptr, static_cast<std::uint64_t>(number), &tick_};
+      release = {tick_.nominal, nullptr, tick_number(), &tick_};
     } else {
       frame_ = std::move(frames_.front());
       frames_.pop_front();
@@ -102,6 +103,13 @@ class RecordedOrder {
   // If no tick is due, the waiting ticks read this frame or a later one.
   [[nodiscard]] bool frame_is_due() const {
     return !frames_.empty() && (!ticks_.empty() || ended_ || frames_.size() > k_frames_queued_max);
+  }
+
+  // By the clock, skipped ticks have numbers too.
+  [[nodiscard]] std::uint64_t tick_number() const {
+    if (!by_clock_) return tick_.activation - 1;
+    return static_cast<std::uint64_t>(tick_.nominal.nanoseconds /
+                                      reader_.nominal_tick().nanoseconds);
   }
 
   void read() {
@@ -161,6 +169,7 @@ class RecordedOrder {
     frames_.push_back(std::move(held));
   }
 
+  bool by_clock_;  // the ticks' release
   RecordingReader& reader_;
   std::function<void(OutputMessage&)> on_output_;
   std::deque<QueuedFrame> frames_;

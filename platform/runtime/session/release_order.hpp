@@ -7,6 +7,7 @@
 
 #include "platform/cells/cell.hpp"
 #include "platform/runtime/session/frame_source.hpp"
+#include "platform/runtime/session/tick_releases.hpp"
 #include "platform/sinks/record/choice_record.hpp"
 
 namespace glint {
@@ -31,24 +32,27 @@ void run_releases(Order& order, const OnFrame& on_frame, const OnTick& on_tick) 
   }
 }
 
-[[nodiscard]] inline Duration tick_period_of(const Cell& cell) {
-  return {static_cast<std::int64_t>(1e9 / cell.tick_hz)};
-}
-
-// Order of a run: frames at their arrival, ticks at their period until the last frame's poses are
+// Order of a run: frames at their arrival, ticks at their releases until the last frame's poses are
 // lost. At equal times the frame is first.
 class NominalOrder {
  public:
-  // `stop` may be null. When it is set, no more frames are taken.
-  NominalOrder(const Cell& cell, FrameSource& source, const std::atomic<bool>* stop)
-      : source_(source), stop_(stop), period_(tick_period_of(cell)), lost_after_(cell.lost_after) {}
+  // `estimates`: those of the frames that this order releases. `stop` may be null. When it is set,
+  // no more frames are taken.
+  NominalOrder(const Cell& cell, FrameSource& source, const MeasuredEstimates& estimates,
+               const std::atomic<bool>* stop)
+      : source_(source),
+        estimates_(estimates),
+        stop_(stop),
+        releases_(cell),
+        lost_after_(cell.lost_after) {}
 
   // Returns false if nothing is left.
   [[nodiscard]] bool next(NextRelease& release) {
     if (!frame_waits_ && !frames_ended_) take_frame();
-    if (tick_ < until_) {
-      release = {tick_, nullptr, number_++};
-      tick_ = tick_ + period_;
+    const MeasuredEstimate newest = estimates_.newest();
+    if (const Time tick = releases_.next(newest); tick < until_) {
+      release = {tick, nullptr, number_++};
+      releases_.released(tick, newest);
       return true;
     }
     release = {until_, &arrived_};
@@ -66,11 +70,12 @@ class NominalOrder {
   }
 
   FrameSource& source_;
+  const MeasuredEstimates& estimates_;
   const std::atomic<bool>* stop_;
-  Duration period_, lost_after_;
+  TickReleases releases_;
+  Duration lost_after_;
   ArrivedFrame arrived_;
-  Time tick_,
-      until_;  // time of the next tick; arrival of the waiting frame, or the end time of the ticks
+  Time until_;  // arrival of the waiting frame, or the end time of the ticks
   std::uint64_t number_ = 0;
   bool any_frame_ = false, frame_waits_ = false, frames_ended_ = false;
 };

@@ -47,7 +47,7 @@ void recompute(const Cell& cell, RecordingReader& reader, const ReplayOptions& o
                ReplayResult& result) {
   RecordComparison comparison;
   // After a gap no record is compared, since the tracker lacks frames from there on.
-  RecordedOrder order(reader, [&](OutputMessage& output) {
+  RecordedOrder order(cell, reader, [&](OutputMessage& output) {
     ++result.records_recorded;
     if (output.tick > options.until) return;
     if (!order.has_gap()) comparison.recorded.push_back(std::move(output.record));

@@ -93,6 +93,7 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, Ke
   robot_.publish(1, 0);
   outcomes_.resize(kept.outcomes);
   frame_.publish_transforms_to(sinks.dds());
+  if (cell.tick_release == TickRelease::estimate) frame_.announce_to(&measured_);
   if (options.plan.background) {
     Recorder* const recorder = sinks.recorder();
     background_ = std::make_unique<BackgroundGroup>(

@@ -52,6 +52,9 @@ class SessionGroups {
   // See TickGroup.
   void watch(FrameSource& source) noexcept { tick_.watch(source); }
 
+  // Estimates that release a tick, if the cell selects so.
+  [[nodiscard]] MeasuredEstimates& measured() noexcept { return measured_; }
+
   // Call after all groups have ended.
   void report(SessionResult& result);
 
@@ -62,6 +65,7 @@ class SessionGroups {
   OverrunCounters* counters_;
   ToolRoster roster_;
   graph::TripleBuffer<RobotFrame> robot_;
+  MeasuredEstimates measured_;
   FrameGroup frame_;
   TickGroup tick_;
   DecisionHash decisions_;

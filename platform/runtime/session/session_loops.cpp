@@ -12,6 +12,7 @@
 #include "platform/runtime/rt/periodic_loop.hpp"
 #include "platform/runtime/rt/real_time_thread.hpp"
 #include "platform/runtime/rt/service_notifier.hpp"
+#include "platform/runtime/session/estimate_loop.hpp"
 #include "platform/runtime/session/release_order.hpp"
 #include "platform/runtime/session/session_groups.hpp"
 #include "platform/sinks/dds/topic_names.hpp"
@@ -107,7 +108,9 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
     service->watch(ticks);
   }
   if (options.enabled) groups.enable(options.enabled());
-  PeriodicLoop loop(epoch, tick_period_of(cell));
+  PeriodicLoop by_clock(epoch, tick_period_of(cell));
+  EstimateLoop by_estimates(cell, epoch, groups.measured());  // tick_release = "estimate"
+  const bool is_by_clock = cell.tick_release == TickRelease::clock;
   WakeUpLog wake_ups(WakeUpLog::k_entries_max);
   const RunSchedule& plan = options.plan;
   RealTimeThread frame_thread({"glint-frame", plan.frame.cores[0], plan.frame.priority}, [&] {
@@ -125,7 +128,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
   RealTimeThread tick_thread({"glint-tick", plan.tick.cores[0], plan.tick.priority}, [&] {
     counted([&] {
       for (;;) {
-        const std::optional<Tick> tick = loop.next();
+        const std::optional<Tick> tick = is_by_clock ? by_clock.next() : by_estimates.next();
         if (!tick) {
           groups.stop_safe();
           ran_away = true;
@@ -173,8 +176,8 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
   ended = true;
   if (background_thread) background_thread->join();
   if (ran_away) result.fault = k_no_sleep_message;
-  result.ticks_late = static_cast<std::int64_t>(loop.late());
-  result.ticks_skipped = static_cast<std::int64_t>(loop.skipped());
+  result.ticks_late = static_cast<std::int64_t>(by_clock.late());
+  result.ticks_skipped = static_cast<std::int64_t>(by_clock.skipped() + by_estimates.skipped());
   result.tick_wake_up_ns = wake_ups.entries();
   result.heap_allocations_after_start = AllocationCounter::count() - allocations_before;
   result.heap_counted = AllocationCounter::available();
@@ -187,7 +190,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
 
 void run_in_order(const Cell& cell, Time& now, FrameSource& source, SessionGroups& groups,
                   const SessionOptions& options, SessionResult& result) {
-  NominalOrder order(cell, source, options.stop);
+  NominalOrder order(cell, source, groups.measured(), options.stop);
   PrintedRobotWarnings printed;
   const auto on_tick = [&](const NextRelease& release) {
     now = release.nominal;

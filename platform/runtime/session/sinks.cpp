@@ -34,14 +34,14 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
-
 double checked_bus_load(const Cell& cell) {
-  const CanTraffic traffic{cell.tools.count, cell.tick_hz, cell.can.format};
+  const CanTraffic traffic{cell.tools.count, highest_tick_hz_of(cell), cell.can.format};
   const CanBitRates rates{static_cast<double>(cell.can.bit_rate),
                           static_cast<double>(cell.can.data_bit_rate)};
   if (const auto refusal = check_bus_load(traffic, rates)) {
-    throw InputError(cell.file + ": can: " + *refusal);
+    const bool by_estimates = cell.tick_release == TickRelease::estimate;
+    throw InputError(cell.file + ": can: " + *refusal +
+                     (by_estimates ? ", or rates.tick_release = \"clock\"" : ""));
   }
   return bus_load(traffic, rates).fraction;
 }
@@ -50,7 +50,7 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
   DdsSettings settings = network_of(cell.dds);
   settings.tool_names = names_of(cell.tools);
   settings.button_timeout = cell.button_timeout;
-  settings.tick_period = tick_period(cell);
+  settings.tick_period = tick_period_of(cell);
   settings.actuation_delay = cell.actuation_delay;
   settings.unix_minus_session = {unix_offset_ns};
   for (const NamedFile& file : cell.named_files) {
@@ -81,7 +81,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     recording_file_ = in_folder(out_, cell.record.file);
     RecordingInfo info;
     info.level = recording_level(cell.record.level, cell.file);
-    info.nominal_tick = tick_period(cell);
+    info.nominal_tick = tick_period_of(cell);
     info.unix_offset = {unix_offset_ns};
     info.tool_names = names_of(cell.tools);
     info.facts = {{"compiler", __VERSION__},

@@ -33,6 +33,7 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
       frame_notes_(&frame_notes),
       node_(static_cast<unsigned>(cell.can.node)),
       frames_a_pose_(can_frames_per_pose(cell.can.format)),
+      tick_release_(cell.tick_release),
       lost_after_(cell.lost_after),
       samples_(&output_->output<PoseSamples>()),
       frames_(&output_->output<CanFrames>()),
@@ -169,9 +170,12 @@ CanFrame TickGroup::with_node_state(const CanFrame& frame) const noexcept {
 
 void TickGroup::send_poses(Time woken) noexcept {
   const auto& estimates = std::as_const(*output_).token<graph::Latest<Estimates>>();
-  // A substitute carries older estimates: the newest ones remain for the next tick.
+  // A substitute carries older estimates: the newest ones remain for the next tick. If
+  // estimates release ticks, one that measured no tool is carried by the clock's: it has no
+  // latency.
+  const bool counts = tick_release_ == TickRelease::clock || has_measurement(estimates.value());
   const bool first_carried = !overrun_.happened() && estimates.version() != carried_version_ &&
-                             estimates.value().verdict.usable();
+                             estimates.value().verdict.usable() && counts;
   if (!overrun_.happened() && !first_carried) carried_version_ = estimates.version();
   if (pose_frames() == 0) return;
 

@@ -98,6 +98,7 @@ class TickGroup {
   OverrunNotes own_notes_;
   unsigned node_;
   int frames_a_pose_;
+  TickRelease tick_release_;
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last tick
   bool skipped_ = false;            // no output at the last tick

@@ -37,7 +37,7 @@ inline SessionResult run_with_buttons(const Cell& cell, const std::vector<Button
     groups->apply_changes(now);
     groups->process(*release.frame);
   };
-  NominalOrder order(cell, source, nullptr);
+  NominalOrder order(cell, source, groups->measured(), nullptr);
   run_releases(order, on_frame, on_tick);
   groups->report(result);
   sinks.close(result);
