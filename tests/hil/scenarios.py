@@ -18,6 +18,7 @@ SETTLED_MS = 1000  # Glint tracks, and a person has enabled the motion
 VARIANTS = {  # of the cell: what is replaced
     "cell": [],
     "cell_1000": [("tick_hz = 250", "tick_hz = 1000")],
+    "cell_at_once": [("tick_hz = 250", "tick_hz = 250\ntick_release = \"estimate\"")],
     "cell_wrong": [("[650.0, ", "[350.0, ")],
 }
 
@@ -37,7 +38,8 @@ def load():
             faults.append(f"0 glint start /{row.get('cell', 'cell')}.toml")
         scenarios.append({
             "group": "faults", "losses": False, "counts": {}, "text": "", **row, "ends": ends,
-            "tick_hz": tick_hz, "faults": sorted(faults, key=lambda line: int(line.split()[0])),
+            "tick_hz": tick_hz, "at_once": row.get("cell") == "cell_at_once",
+            "faults": sorted(faults, key=lambda line: int(line.split()[0])),
             "expected": [f"follow {enable}..{enable + ENABLE_CYCLE_MS}", *row.get("expected", [])]})
     return scenarios
 
