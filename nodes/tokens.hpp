@@ -157,7 +157,7 @@ struct TrackedTool {
   bool ambiguous = false;         // an alternative is nearly as likely
   // Publish the filter's pose: the markers alone are too imprecise, or in doubt between minima.
   bool use_filter_pose = false;
-  bool in_use = false;            // otherwise default-constructed
+  bool in_use = false;  // otherwise default-constructed
 };
 // One partition: tool t has index t / k_tool_partitions.
 struct FollowedTools {

@@ -15,7 +15,7 @@ namespace {
 
 using namespace glint;
 
-// Per iteration of each loop, in picoseconds: a measurement of the node's author on this board.
+// Per iteration of each loop, in picoseconds. Invented: the author of a node measures them.
 constexpr KernelCost k_own_cost{"FindNearest", {"call", "markers"}, {60'000, 9'000}};
 
 int bound(const char* board_name) {
