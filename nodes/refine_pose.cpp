@@ -229,9 +229,9 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   out.reason = passes_test || is_inflated ? Reason::none : Reason::bad_fit;
   if (out.reason != Reason::none) return;
   double inflation = is_inflated ? chi_square / pose.degrees_of_freedom : 1.0;
-  // The noise is larger by that much, and the odds of two hypotheses are smaller. A motion that
-  // follows one of them is evidence of its own.
-  if (!followed) out.odds /= inflation;
+  // The noise is larger by that much, also than the doubt that chi-square was divided by: the odds
+  // are smaller. A motion that follows one hypothesis is evidence of its own.
+  if (!followed) out.odds /= std::max(1.0, inflation / variance_factor);
   const bool weak =
       is_inflated || pose.rejected >= 0 || kept.isolated_count() <= k_chance_agreement_max;
   // Markers and motion may each pass their own test and fail the joint test. Four markers, some of

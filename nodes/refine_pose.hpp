@@ -23,12 +23,12 @@ inline constexpr int k_predicted_markers_min = 3;
 
 // If the fit fails the chi-square test with all markers and with any single marker removed, its
 // covariance is scaled by the reduced chi-square (Birge 1932), at most by 16; unless it follows a
-// tracked motion, its odds are divided by the same factor. Above that the result
-// is `bad_fit`. `bad_fit` is also the result if a pose of three markers, or one with inflated
-// covariance or a removed marker, contradicts the tracked motion. The mask holds the markers used.
-// For three isolated markers or fewer the filter receives a measurement linearised at its
-// prediction; for a flat tool nearly face-on, one linearised face-on. The alternative labeling is
-// fitted, too: choose_hypothesis.hpp selects a pose hypothesis and returns its odds against the
+// tracked motion, its odds are divided by what that exceeds the doubt about the noise by. Above 16
+// the result is `bad_fit`. `bad_fit` is also the result if a pose of three markers, or one with
+// inflated covariance or a removed marker, contradicts the tracked motion. The mask holds the
+// markers used. For three isolated markers or fewer the filter receives a measurement linearised at
+// its prediction; for a flat tool nearly face-on, one linearised face-on. The alternative labeling
+// is fitted, too: choose_hypothesis.hpp selects a pose hypothesis and returns its odds against the
 // others.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
