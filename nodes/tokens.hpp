@@ -169,12 +169,11 @@ struct FollowedTools {
 // newest pose may come from one or two visible markers, if it is precise enough (FollowMotion).
 // Then marker_mask holds only these, and `reason` states why there are no more.
 struct Track {
-  bool alive = false;  // a pose younger than lost_after exists
-  bool is_filter_pose =
-      false;                  // `newest` is the filter's pose: the markers alone are too imprecise
-  bool unconfirmed = false;   // not yet both unambiguous and precise: not published
-  bool measured_now = false;  // this frame gave a measured pose of at least three markers
-  bool has_previous = false;  // `previous` is in the same base and recent enough
+  bool alive = false;           // a pose younger than lost_after exists
+  bool is_filter_pose = false;  // `newest` is the filter's pose, not the markers' own
+  bool unconfirmed = false;     // not yet both unambiguous and precise: not published
+  bool measured_now = false;    // this frame gave a measured pose of at least three markers
+  bool has_previous = false;    // `previous` is in the same base and recent enough
   Reason reason = Reason::no_frame_yet;  // why this frame gave no measured pose
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
