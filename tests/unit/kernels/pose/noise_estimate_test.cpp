@@ -37,24 +37,30 @@ class NoiseOf : public ::testing::TestWithParam<MarkerNoise> {
  protected:
   static constexpr MarkerNoise k_declared{0.0015, 0.1, 253};
 
-  // The estimate after this many frames of one tool in random poses; each marker also has a known
-  // variance of its own.
+  // Adds a frame of the tool in a random pose. own: variance that each marker states beside the
+  // noise of all.
+  static void add_frame(const Tool& tool, const MarkerVariance& truth, const MarkerVariance& own,
+                        double outlier_m, Random& random, NoiseEstimate& estimate) {
+    const MarkerNoise now = noise_now(estimate, k_declared);
+    const Pose pose = test::tilted_pose(tool, random.within(0.2, 1.2),
+                                        {0.1, -0.05, random.within(0.4, 0.7)}, random);
+    const MarkerVariance taken = variance_of(now, own);
+    std::vector<WeightedMarker> markers = seen(tool, pose, truth, taken, random);
+    markers[0].range_m += outlier_m;
+    const WeightedFit fit = fit_weighted(markers, mean_of(markers), pose, nullptr, 20);
+    EXPECT_EQ(fit.reason, Reason::none);
+    const std::vector<MarkerVariance> variances(markers.size(), taken);
+    add(residuals_of(markers, variances, fit.T_camera_tool, now), k_declared, estimate);
+  }
+
+  // The estimate after this many frames; each marker also has a known variance of its own.
   static NoiseEstimate after(int frames, const Tool& tool, const MarkerNoise& truth,
                              const MarkerVariance& own, std::uint64_t seed, double outlier_m = 0) {
     Random random(seed);
     NoiseEstimate estimate;
     for (int frame = 0; frame < frames; ++frame) {
-      const MarkerNoise now = noise_now(estimate, k_declared);
-      const Pose pose = test::tilted_pose(tool, random.within(0.2, 1.2),
-                                          {0.1, -0.05, random.within(0.4, 0.7)}, random);
-      const MarkerVariance taken = variance_of(now, own);
-      std::vector<WeightedMarker> markers =
-          seen(tool, pose, variance_of(truth, own), taken, random);
-      if (frame % 20 == 0) markers[0].range_m += outlier_m;
-      const WeightedFit fit = fit_weighted(markers, mean_of(markers), pose, nullptr, 20);
-      EXPECT_EQ(fit.reason, Reason::none);
-      const std::vector<MarkerVariance> variances(markers.size(), taken);
-      add(residuals_of(markers, variances, fit.T_camera_tool, now), k_declared, estimate);
+      add_frame(tool, variance_of(truth, own), own, frame % 20 == 0 ? outlier_m : 0, random,
+                estimate);
     }
     return estimate;
   }
@@ -98,6 +104,19 @@ TEST_F(NoiseEstimateTest, IsHardlyMovedByAMarkerThatIsFarOff) {
   const NoiseEstimate found =
       after(900, test::random_tool(random, 6), {0.0015, 0.1}, {1e-4, 0, 1e-4, 2.5e-7}, 8, 0.05);
   EXPECT_LT(found.range_sigma_m, 0.0015 * 1.3);
+}
+
+// As far away and partly occluded markers do, for whole seconds.
+TEST_F(NoiseEstimateTest, IsKeptByMarkersThatOverstateTheirOwnVariance) {
+  Random random(3);
+  const Tool tool = test::random_tool(random, 5);
+  NoiseEstimate estimate;
+  for (int frame = 0; frame < 300; ++frame) {
+    const MarkerVariance own = frame < 150 ? MarkerVariance{} : MarkerVariance{0.3, 0, 0.3, 1e-4};
+    add_frame(tool, variance_of(k_declared, {}), own, 0, random, estimate);
+  }
+  EXPECT_NEAR(estimate.range_sigma_m, k_declared.range_sigma_m, 0.2 * k_declared.range_sigma_m);
+  EXPECT_NEAR(estimate.pixel_sigma_px, k_declared.pixel_sigma_px, 0.2 * k_declared.pixel_sigma_px);
 }
 
 TEST_F(NoiseEstimateTest, StaysWithinItsLimits) {
