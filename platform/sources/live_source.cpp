@@ -107,21 +107,26 @@ std::optional<Time> LiveSource::exposure_of(Time stamp, Time arrival) {
   return exposure;
 }
 
-LiveSource::Slot* LiveSource::slot_for_next() {
+std::optional<std::size_t> LiveSource::unused_slot() const noexcept {
   const auto unused =
       std::find_if(used_.begin(), used_.end(), [](const auto& used) { return !used; });
-  if (unused != used_.end()) {
-    next_slot_ = static_cast<std::size_t>(unused - used_.begin());
-    return &slots_[next_slot_];
-  }
-  const std::optional<std::size_t> oldest = take_oldest();
-  if (!ended_) {
+  if (unused == used_.end()) return std::nullopt;
+  return static_cast<std::size_t>(unused - used_.begin());
+}
+
+LiveSource::Slot* LiveSource::slot_for_next() {
+  std::optional<std::size_t> slot = unused_slot();
+  const bool all_used = !slot;
+  if (all_used) slot = take_oldest();
+  const bool drops_oldest = all_used && slot;
+  if (!slot) slot = unused_slot();  // the tracker took all that waited since the first search
+  if ((drops_oldest || !slot) && !ended_) {
     ++dropped_;
     note(SourceFault::frame_dropped);
   }
-  if (!oldest) return nullptr;
-  used_[*oldest] = false;
-  next_slot_ = *oldest;
+  if (!slot) return nullptr;
+  used_[*slot] = false;
+  next_slot_ = *slot;
   return &slots_[next_slot_];
 }
 

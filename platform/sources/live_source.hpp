@@ -88,6 +88,7 @@ class LiveSource : public FrameSource {
   // Removes the oldest frame that waits and returns its slot. Called by the tracker and, to drop
   // the frame, by the reading thread.
   [[nodiscard]] std::optional<std::size_t> take_oldest() noexcept;
+  [[nodiscard]] std::optional<std::size_t> unused_slot() const noexcept;
   [[nodiscard]] Time session_time(Time monotonic) const {
     return Time{} + (monotonic - clock_.epoch);
   }
